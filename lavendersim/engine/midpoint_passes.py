@@ -212,7 +212,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 contact = contacts[c]
                 stay(contact, bodies, poses)
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
-                lasting(contact, params)
+                lasting(contact, velocities, motion, params)
             if loaded:
                 for c in range(count):
                     preload(contacts[c], velocities, motion)

@@ -92,12 +92,26 @@ def make_is_turning(spec: Spec) -> Any:
 
 
 def make_lasting(spec: Spec) -> Any:
-    """Return `kernel(contact, params)`, of a row completed at the start: whether it lasts."""
+    """Return `kernel(contact, velocities, motion, params)`, of a row completed at the start.
+
+    Whether it lasts, by how fast its surfaces approach before forces act. velocities: after them.
+    """
     friction, springs = row_terms(spec).frictional, spec.has("contact_spring")
     ropes, bilateral = spec.has("rope"), row_terms(spec).bilateral
+    turns, normal_velocity = spec.has("rotation"), make_normal_velocity(spec)
 
-    def lasting(contact, params):
+    def is_twisted(v, m):
+        return v.wx != m.wx or v.wy != m.wy or v.wz != m.wz
+
+    is_twisted = kernel(is_twisted, spec)
+
+    def lasting(contact, velocities, motion, params):
         contact.begin_n = contact.v_n_pre - contact.dv_n
+        if turns:
+            a, b = contact.a, contact.b
+            if is_twisted(velocities[a], motion[a]) or is_twisted(velocities[b], motion[b]):
+                # dv_n is without what torques change.
+                contact.begin_n = normal_velocity(contact, motion[a], motion[b])
         contact.middle_n = contact.begin_n
         forced = abs(contact.dv_n) * params.timestep / params.dt
         closed = contact.phi <= params.slop

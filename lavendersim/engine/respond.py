@@ -114,7 +114,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                 predict_impacts(contacts, count, motion, params)
         if centred:
             for c in range(count):
-                lasting(contacts[c], params)
+                lasting(contacts[c], velocities, motion, params)
             if bilateral:
                 for c in range(count):
                     contact = contacts[c]

@@ -26,15 +26,18 @@ NOTHING: Final = np.array([[-1.0, 0.0], [1.0, 1.0]])  # a picture without bodies
 MOST_BODIES = 3000  # of a larger scene the first ones; more are less than a dot each
 
 
-def thumbnail(trace: Any) -> bytes:
-    """Return the picture [PNG] of the last state of a log whose numbers are all finite."""
+def thumbnail(trace: Any, dpi: int = DPI) -> bytes:
+    """Return the picture [PNG] of the last state of a log whose numbers are all finite.
+
+    dpi: dots per inch; the picture is WIDTH x HEIGHT inches.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.collections import PolyCollection
     from matplotlib.figure import Figure
 
     view = view_of(trace)
     outlines, colours, seen = _outlines(trace, *view)
-    figure = Figure(figsize=(WIDTH, HEIGHT), dpi=DPI)
+    figure = Figure(figsize=(WIDTH, HEIGHT), dpi=dpi)
     FigureCanvasAgg(figure)  # without pyplot, nothing else gives the figure one
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
@@ -52,7 +55,7 @@ def thumbnail(trace: Any) -> bytes:
     axes.add_collection(drawn)
     file = io.BytesIO()
     # no date and no version in the file: equal logs give equal pictures
-    figure.savefig(file, format="png", dpi=DPI, metadata={"Software": None})
+    figure.savefig(file, format="png", dpi=dpi, metadata={"Software": None})
     return file.getvalue()
 
 

@@ -158,9 +158,13 @@ LASTING = interpreted(midpoint_rows.make_lasting(SPRUNG))
 
 
 def lasts(**values: float) -> bool:
-    contact = Row(np.random.default_rng(2), SPRUNG).begins(**values).contact
+    row = Row(np.random.default_rng(2), SPRUNG).begins(**values)
+    contact = row.contact
     contact.slides, contact.jumps = 7, 7
-    LASTING(contact, PARAMS)
+    motion = records(np.zeros(2, dtype(MOTION)))  # no torque acts: spins are those before
+    for i in range(2):
+        motion[i].wx, motion[i].wy, motion[i].wz = row.lead[i].wx, row.lead[i].wy, row.lead[i].wz
+    LASTING(contact, row.lead, motion, PARAMS)
     assert (contact.slides, contact.jumps) == (0, 0)
     assert contact.begin_n == contact.middle_n == contact.v_n_pre - contact.dv_n
     return bool(contact.lasts)
@@ -175,6 +179,24 @@ def test_a_row_of_the_start_lasts_where_it_is_closed_and_calm() -> None:
         assert lasts(v_n_pre=-1.0 - begin, dv_n=-1.0) == (share < 1.0)
         assert lasts(v_n_pre=share * CALM, dv_n=0.0) == (share < 1.0)
     assert lasts(v_n_pre=-9.0, dv_n=0.0, spring_compliance=1e-4)
+
+
+@pytest.mark.parametrize("axis", "xyz")
+@pytest.mark.parametrize("twisted", [0, 1])
+def test_what_a_torque_adds_is_no_approach_of_the_start(axis: str, twisted: int) -> None:
+    """v_n before forces is J v_0, whatever a force off the centre adds to the spin of the step."""
+    row = Row(np.random.default_rng(3)).begins(phi=0.0, dv_n=0.0)
+    row.turned_by(0.0)  # J v_0: at rest
+    motion = records(np.zeros(2, dtype(MOTION)))
+    for i in range(2):
+        for name in ("vx", "vy", "vz", "wx", "wy", "wz"):
+            motion[i][name] = row.lead[i][name]
+    row.lead[twisted][f"w{axis}"] += 1.0
+    row.contact.v_n_pre = (row.scene.jacobian @ row.scene.motion)[0]
+    assert abs(row.contact.v_n_pre) > CALM
+    interpreted(midpoint_rows.make_lasting(SPEC))(row.contact, row.lead, motion, PARAMS)
+    assert row.contact.lasts == 1
+    assert abs(row.contact.begin_n) < 1e-13  # sums of a dozen numbers near 1
 
 
 STIRS = interpreted(midpoint_rows.make_stirs(SPEC))

@@ -37,6 +37,7 @@ from .rounds import (
     after_failed,
     after_kept,
     after_stalled,
+    back_to,
     begin_rounds,
     is_kept,
 )
@@ -162,6 +163,7 @@ def make_newton(spec: Spec):
     restore_best = make_restore(spec, "best", set_impulse)
     begin, kept = kernel(begin_rounds, spec), kernel(is_kept, spec)
     go_on, go_softer = kernel(after_kept, spec), kernel(after_failed, spec)
+    back: Any = kernel(back_to, spec)
     stay, slides = kernel(after_stalled, spec), row_terms(spec).frictional
     shift_together: Any = make_shift_together(spec)
 
@@ -177,7 +179,8 @@ def make_newton(spec: Spec):
         stalled, columns = 0, NO_ROUND
         keep(contacts, count)
         rounds = begin(STICKING if sticking_guess else SOFTEST)
-        steps, guess_holds = 0, sticking_guess
+        lowest = rounds.good  # softness of the round that left the least
+        steps, guess_holds, went_back = 0, sticking_guess, False
         while steps < most:
             off = max(least, tolerance)
             at_rest = sticking_guess and steps == 0
@@ -204,7 +207,7 @@ def make_newton(spec: Spec):
                     stalled += stalls
                     now = largest
                     if largest <= least:
-                        least = largest
+                        least, lowest = largest, softness
                         keep(contacts, count)
                     rounds = stay(rounds) if stalled >= PATIENCE and slides else go_on(rounds)
                 else:
@@ -213,7 +216,12 @@ def make_newton(spec: Spec):
                 # What a guess of rest led to says nothing of how fast softness may fall.
                 rounds = go_softer(rounds, at_rest)
                 if rounds.failed > FAILURES:
-                    break
+                    if now <= least or went_back:
+                        break
+                    # Rounds since the least went astray: from there on they are as soft as it was.
+                    restore_best(contacts, count, velocities)
+                    now, stalls, stalled, columns = least, PLAIN, 0, NO_ROUND
+                    rounds, went_back = back(rounds, lowest), True
                 if stalls == TOGETHER:  # what led to it is no guide
                     stalls, stalled, columns = PLAIN, 1, NO_ROUND
                 if at_rest:

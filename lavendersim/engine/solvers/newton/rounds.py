@@ -79,6 +79,11 @@ def after_stalled(rounds: Rounds) -> Rounds:
     return Rounds(softness, rounds.softness, rounds.cut, rounds.failed)
 
 
+def back_to(rounds: Rounds, softness: float) -> Rounds:
+    """Return the rounds that go on, by small cuts, from the one of this softness."""
+    return Rounds(softness * rounds.cut, softness, rounds.cut, 0)
+
+
 def after_failed(rounds: Rounds, keeps_cut: bool) -> Rounds:
     """Return the rounds after one that is not kept; keeps_cut: that says nothing of the cut."""
     cut = rounds.cut if keeps_cut else sqrt(rounds.cut)

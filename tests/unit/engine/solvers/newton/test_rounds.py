@@ -19,6 +19,7 @@ from lavendersim.engine.solvers.newton.rounds import (
     after_failed,
     after_kept,
     after_stalled,
+    back_to,
     begin_rounds,
     is_at_minimum,
     is_idle,
@@ -50,6 +51,16 @@ def test_no_round_that_failed_is_made_again() -> None:
         soft.append(kept.softness)
     expected = [SOFTEST * CUT ** (0.5**k) for k in range(5)]
     assert soft == pytest.approx(expected, rel=1e-14)
+
+
+def test_rounds_that_went_astray_go_on_beside_the_one_that_left_the_least() -> None:
+    """Not beside the last that was kept, and by the cuts that failures have made small."""
+    astray = after_kept(after_kept(begin_rounds(SOFTEST)))
+    for _ in range(4):
+        astray = after_failed(astray, keeps_cut=False)
+    now = back_to(astray, SOFTEST)
+    assert now.softness == pytest.approx(SOFTEST * CUT ** (0.5**4), rel=1e-14)
+    assert (now.good, now.failed) == (SOFTEST, 0)
 
 
 def test_the_first_round_has_to_bring_the_residual_down_and_later_ones_may_raise_it() -> None:
