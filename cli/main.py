@@ -21,6 +21,7 @@ from lavender_cli import (
     diff,
     doctor,
     export,
+    going_on,
     judge,
     ls,
     measures,
@@ -149,7 +150,7 @@ def main() -> None:
     except OSError as error:
         named = f"{error.filename}: " if error.filename else ""
         typer.echo(f"{named}{(error.strerror or str(error)).lower()}", err=True)
-        sys.exit(DISK_FULL if error.errno in run.DISK else 2)
+        sys.exit(DISK_FULL if error.errno in going_on.DISK else 2)
     except SystemExit as end:
         if end.code == INTERRUPTED:
             typer.echo("interrupted", err=True)

@@ -15,13 +15,24 @@ from .effects import made_once
 from .foreseen_impacts import FLIGHT
 from .spec import Spec
 
-# What else acts on a contact that flies, or as it is met: their bounces are no powers of e.
-UNLIKE = ("impact_order", "drag", "cohesion", "compliance", "spring")
-
 
 def bounces_repeat(spec: Spec) -> bool:
     """Whether impacts of a contact alone are looked at beyond the first of a step."""
-    return spec.has("impact_time") and not any(map(spec.has, UNLIKE))
+    repeat = spec.has("impact_time")
+    # What else acts on a contact that flies, or as it is met: its bounces are no powers of e.
+    ordered, drag, cohesion = spec.has("impact_order"), spec.has("drag"), spec.has("cohesion")
+    compliance, spring = spec.has("compliance"), spec.has("spring")
+    if ordered:
+        repeat = False
+    if drag:
+        repeat = False
+    if cohesion:
+        repeat = False
+    if compliance:
+        repeat = False
+    if spring:
+        repeat = False
+    return repeat
 
 
 def make_bounce_on(spec: Spec) -> Any:

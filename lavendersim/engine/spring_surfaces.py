@@ -21,7 +21,7 @@ def make_note_working(spec: Spec) -> Any:
     rows: bodies where the step begins, joined.
     """
     kinematic = spec.has("kinematic")
-    gives_way = spec.has("compliance") and not spec.has("contact_spring")
+    compliance, springs = spec.has("compliance"), spec.has("contact_spring")
     moving, turns = has_hook(spec, "surface_velocity"), spec.has("rotation")
 
     def moves(body, v):
@@ -60,8 +60,11 @@ def make_note_working(spec: Spec) -> Any:
             if contact.lambda_n > 0.0 and group > 0:
                 works = moves(a, velocities[contact.a]) or moves(b, velocities[contact.b])
                 works = works or slides(a) or slides(b)
-                if gives_way:
-                    works = works or state.pairs[contact.pair].compliance > 0.0
+                if compliance:
+                    gives_way = state.pairs[contact.pair].compliance > 0.0
+                    if springs:
+                        gives_way = False
+                    works = works or gives_way
                 if works and rows[group - 1].again == 1:
                     rows[group - 1].worked, any_works = 1, True
         return any_works

@@ -77,7 +77,9 @@ def check_page_path(page: Path) -> None:
     check(page)
 
 
-def write_report(results: Sequence[Any], path: Path, about: Mapping[str, str]) -> list[str]:
+def write_report(
+    results: Sequence[Any], path: Path, about: Mapping[str, str] | None = None
+) -> list[str]:
     """Write one self-contained HTML page of finished runs (`runner.Finished`): a row per case.
 
     about: how they were made, in words, by what it says. Returns a sentence of each log that is
@@ -85,7 +87,7 @@ def write_report(results: Sequence[Any], path: Path, about: Mapping[str, str]) -
     """
     from lavendersim.figures.report import write_report as write_page
 
-    return write_page(results, path, about)
+    return write_page(results, path, about or {})
 
 
 def write_matrix(

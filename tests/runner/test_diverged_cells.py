@@ -106,7 +106,7 @@ def test_a_diverged_cell_has_its_row_and_picture_in_a_report(
     finished: Finished, tmp_path: Path
 ) -> None:
     page = tmp_path / "report.html"
-    write_report([finished], page, {})
+    write_report([finished], page)
     text = page.read_text(encoding="utf-8")
     assert "0 of 1 cases pass" in text
     assert f"after step {LAST_STEP} (t = 0.1375 s)" in text

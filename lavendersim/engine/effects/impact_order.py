@@ -163,7 +163,7 @@ def make_order(spec: Spec) -> Any:
                 contacts[c].waits, waiting = 1, True
         return waiting
 
-    let_rebound = kernel(let_rebound, spec)
+    rebounding: Any = kernel(let_rebound, spec) if rebounds else None
 
     def until_stop(state, count, length, params, counters):
         # The part that ends where sliding stops, if that comes first.
@@ -209,7 +209,7 @@ def make_order(spec: Spec) -> Any:
             if contact.waits == 1:
                 waiting = True
         if rebounds:
-            waiting = let_rebound(contacts, count) or waiting
+            waiting = rebounding(contacts, count) or waiting
         if not (meets or waiting):
             return count, until_stop(state, count, left, params, counters)
         rows = touching
