@@ -128,13 +128,13 @@ ASKED = {
         "impact_order": (
             *("effects/impact_time", "effects/overlooked_points", "effects/sliding_stops"),
             *("contact", "effects/warm_start", "memory", "midpoint_geometry"),
-            *("parts", "respond", "runner/log_size", "spring_contacts"),
+            *("parts", "repeated_bounces", "respond", "runner/log_size", "spring_contacts"),
         ),
         "overlooked_points": (
             *("collide/narrow_phase", "collide/pairs/cylinder_plane", "foreseen_impacts"),
             *("impact_location", "impact_rows", "memory", "midpoint_geometry", "respond", "step"),
         ),
-        "spring": ("effects/projection", "integrate"),
+        "spring": ("effects/projection", "integrate", "repeated_bounces"),
         "error_control": (
             *("effects/projection", "effects/warm_start", "parts", "step", "step_doubling"),
         ),
@@ -152,7 +152,9 @@ ASKED = {
             *("effects/projection", "foreseen_impacts", "impact_rows", "midpoint_jumps"),
             *("midpoint_rows", "spring_surfaces", "spring_unions"),
         ),
-        "compliance": ("foreseen_impacts", "spring_surfaces"),
+        "compliance": ("foreseen_impacts", "repeated_bounces", "spring_surfaces"),
+        "cohesion": ("repeated_bounces",),
+        "drag": ("repeated_bounces",),
         "restitution": (
             *("effects/impact_order", "foreseen_impacts", "overlooked_points", "spring_contacts"),
         ),
