@@ -17,6 +17,7 @@ rounds with ever less of it, the last without any, so that it takes nothing from
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any, Final, Literal, NamedTuple
 
@@ -177,10 +178,13 @@ def _round(
     y = x + rows.along(z) / SOFTNESS
     pushed = rows.project(y)
     F = z - b + rows.given(pushed)
+    before = math.inf
     for _ in range(STEPS):
         off = float(np.linalg.norm(F))
-        if off <= ROUND_OFF:
+        # y is as exact as its size lets it be, F as y: where a step gains nothing there, none will.
+        if off <= ROUND_OFF or 0.5 * before <= off <= ROUND_OFF * float(np.linalg.norm(y)):
             break
+        before = off
         dz = rows.step(y, F)
         slope, dy = float(F @ dz), rows.along(dz) / SOFTNESS
         length = 1.0
