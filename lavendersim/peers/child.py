@@ -47,6 +47,7 @@ def run(task: Task, pipe: Connection) -> str:
     rows: list[tuple[float, ...]] = []
     counts = [world.iterations()] if peer.counted else []
     first, spent, pushed, sent = 0, 0, False, perf_counter()
+    why = ""
     for step in range(1, scene.steps + 1):
         loads = scene.loads(step)
         if loads is not None or pushed:
@@ -55,6 +56,9 @@ def run(task: Task, pipe: Connection) -> str:
         start = perf_counter_ns()
         world.step()
         spent += perf_counter_ns() - start
+        if peer.bounded and world.is_full():  # it left contacts out: what it did is no step
+            why = f"{peer.title} had no room for the contacts of a step ({peer.capacity})"
+            break
         poses.append(world.poses())
         speeds.append(world.velocities())
         if peer.counted:
@@ -67,7 +71,7 @@ def run(task: Task, pipe: Connection) -> str:
             first, spent, sent = step + 1, 0, perf_counter()
     if poses:
         pipe.send(_states(first, (poses, speeds, rows, counts), spent, reported))
-    return ""
+    return why
 
 
 def _states(first: int, of_steps: tuple[Any, ...], spent: int, reported: int) -> States:

@@ -48,6 +48,7 @@ PEER: Final = Peer(
     momentum=True,
     iterations="none by Dantzig's method, which is direct; by Gauss-Seidel at most as many as are "
     "set, it does not tell how many",
-    capacity="100,000 contacts, instead of its own 1000; more are left out without a word",
+    bounded=True,
+    capacity="100,000 contacts, instead of its own 1000; the step that has more ends the run",
     repeats="the same bits on one machine",
 )

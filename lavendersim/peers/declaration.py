@@ -68,6 +68,7 @@ class Peer:
     momentum: bool = False  # its impulses are all that acts beside gravity and forces of a step
     counted: bool = False  # its adapter counts the iterations of each step (`World.iterations`)
     iterations: str = ""  # what these are; or how many a step has, where it does not count them
+    bounded: bool = False  # its adapter tells where contacts had no room (`World.is_full`)
     capacity: str = ""  # for how many contacts it has room, and what becomes of more
     repeats: str = ""  # whether two runs agree to the bit, in words
 

@@ -89,6 +89,7 @@ PEER: Final = Peer(
         ),
         EngineSetting(name="margin", type=Annotated[float, Quantity("m", minimum=0)], doc="[m]"),
         EngineSetting(name="speculative", type=bool, doc="contacts ahead"),
+        EngineSetting(name="memory", type=Count, doc="[MB] for contacts, 512 where absent"),
     ),
     swept=(
         Knobs("mujoco", {"time_constant_steps": (2.0,)}),  # as stiff as its spring may be
@@ -106,7 +107,8 @@ PEER: Final = Peer(
     counted=True,
     iterations="of the convex problem's solver, in the island with the most; by RK4 of its last "
     "stage",
-    capacity="512 MB for contacts and their constraints; what has no room is left out, and MuJoCo "
-    "warns of it",
+    bounded=True,
+    capacity="512 MB, or `memory`, for contacts and their constraints; a step that needs more ends "
+    "the run",
     repeats="the same bits on one machine, in one thread",
 )

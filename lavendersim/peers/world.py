@@ -54,3 +54,10 @@ class CountingWorld(World, Protocol):
 
     def iterations(self) -> int:
         """Return the iterations of the last step, 0 before the first."""
+
+
+class BoundedWorld(World, Protocol):
+    """That of an engine which has room for so many contacts and no more: `Peer.bounded`."""
+
+    def is_full(self) -> bool:
+        """Return whether contacts of the last step had no room."""

@@ -12,11 +12,15 @@ of the projection's derivative (`friction_cone`) a step solves
 of the size of the bodies, however many contacts there are, and halves it until the function falls.
 
 Where redundant contacts leave impulses open a cost u . r, u in the dual cone, chooses among them:
-rounds with ever less of it, the last without any, so that it takes nothing from the fit.
+rounds with ever less of it, then without any, so that it takes nothing from the fit.
+
+y is as large as z / softness, and P(y) no more exact than that: 1e-11 where much is left. Last
+rounds of a larger softness, which would be slow from afar, take this from impulses that fit.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any, Final, Literal, NamedTuple
 
@@ -30,7 +34,8 @@ from lavendersim.problems.friction_cone import derivative_root, project
 Allowed = Literal["cone", "push", "any"]
 
 SOFTNESS: Final = 1e-5  # beside the contacts' own scale, 1: what redundant contacts need [-]
-ROUNDS, STEPS, HALVINGS = 40, 60, 30
+LAST_SOFTNESS: Final = 1e-2
+ROUNDS, LAST_ROUNDS, STEPS, HALVINGS = 40, 3, 60, 30
 # Shares of a cost that rounds begin with: the impulses it moves from their fit are as small [-].
 COSTS: Final = (1e-2, 1e-4)
 ROUNDS_OF_A_COST: Final = 10
@@ -84,18 +89,18 @@ class _Rows(NamedTuple):
             root[y[:, 0] < 0.0, 0, 0] = 0.0
         return root
 
-    def step(self, y: np.ndarray, F: np.ndarray) -> np.ndarray:
+    def step(self, y: np.ndarray, F: np.ndarray, softness: float) -> np.ndarray:
         """Return dz."""
         root = self.root(y)
         if self.dense is not None:
             B = np.matmul(root.transpose(0, 2, 1), self.dense).reshape(-1, len(F))
             B = B[B.any(axis=1)]
-            solved: np.ndarray = np.linalg.solve(B.T @ B / SOFTNESS + np.eye(len(F)), -F)
+            solved: np.ndarray = np.linalg.solve(B.T @ B / softness + np.eye(len(F)), -F)
             return solved
         count = len(root)
         L = sparse.bsr_matrix((root, np.arange(count), np.arange(count + 1)))
         B = (L.T @ self.matrix).tocsr()
-        system = B.T @ B / SOFTNESS + sparse.identity(len(F))
+        system = B.T @ B / softness + sparse.identity(len(F))
         found: np.ndarray = splu(system.tocsc()).solve(-F)
         return found
 
@@ -118,10 +123,10 @@ def fit_impulses(
     rows = _scaled(G, mu, allowed)
     x, z = np.zeros((len(mu), 3)), b / size
     goal = z
-    for push, rounds in _costs(rows, cost):
+    for push, softness, rounds in _stages(rows, cost):
         for _ in range(rounds):
             before = z
-            z, x = _round(rows, goal, x - push, z)
+            z, x = _round(rows, goal, x - push, z, softness)
             change = float(np.linalg.norm(z - before))
             if change <= ROUND_OFF * (1.0 + float(np.linalg.norm(before))):
                 break
@@ -147,15 +152,17 @@ def impulse_matrix(values: np.ndarray, place: np.ndarray, columns: int) -> Any:
     return matrix
 
 
-def _costs(rows: _Rows, cost: np.ndarray | None) -> Iterator[tuple[np.ndarray, int]]:
-    """Yield by how much costs move the centre of a round, last by nothing, and rounds at most."""
+def _stages(rows: _Rows, cost: np.ndarray | None) -> Iterator[tuple[np.ndarray, float, int]]:
+    """Yield by how much costs move the centre of a round, its softness, and rounds at most."""
     if cost is not None:
         own = cost * rows.scale[:, None]
         largest = float(np.abs(own).max())
         if largest > 0.0:
             for share in COSTS:
-                yield share * own / (largest * SOFTNESS), ROUNDS_OF_A_COST
-    yield np.zeros((len(rows.mu), 3)), ROUNDS
+                yield share * own / (largest * SOFTNESS), SOFTNESS, ROUNDS_OF_A_COST
+    nothing = np.zeros((len(rows.mu), 3))
+    yield nothing, SOFTNESS, ROUNDS
+    yield nothing, LAST_SOFTNESS, LAST_ROUNDS
 
 
 def _scaled(G: Any, mu: np.ndarray, allowed: Allowed) -> _Rows:
@@ -171,27 +178,30 @@ def _scaled(G: Any, mu: np.ndarray, allowed: Allowed) -> _Rows:
 
 
 def _round(
-    rows: _Rows, b: np.ndarray, x: np.ndarray, z: np.ndarray
+    rows: _Rows, b: np.ndarray, x: np.ndarray, z: np.ndarray, softness: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return z where F = 0 around the impulses x, and the impulses there."""
-    y = x + rows.along(z) / SOFTNESS
+    y = x + rows.along(z) / softness
     pushed = rows.project(y)
     F = z - b + rows.given(pushed)
+    before = math.inf
     for _ in range(STEPS):
         off = float(np.linalg.norm(F))
-        if off <= ROUND_OFF:
+        # y is as exact as its size lets it be, F as y: where a step gains nothing there, none will.
+        if off <= ROUND_OFF or 0.5 * before <= off <= ROUND_OFF * float(np.linalg.norm(y)):
             break
-        dz = rows.step(y, F)
-        slope, dy = float(F @ dz), rows.along(dz) / SOFTNESS
+        before = off
+        dz = rows.step(y, F, softness)
+        slope, dy = float(F @ dz), rows.along(dz) / softness
         length = 1.0
-        value = _value(z, b, pushed)
+        value = _value(z, b, pushed, softness)
         for _ in range(HALVINGS):
             there = z + length * dz
             at = rows.project(y + length * dy)
             F = there - b + rows.given(at)
             if float(np.linalg.norm(F)) < 0.5 * off:
                 break
-            if _value(there, b, at) <= value + 1e-4 * length * slope:
+            if _value(there, b, at, softness) <= value + 1e-4 * length * slope:
                 break
             length *= 0.5
         else:
@@ -203,6 +213,6 @@ def _round(
     return b - rows.given(pushed), pushed
 
 
-def _value(z: np.ndarray, b: np.ndarray, pushed: np.ndarray) -> float:
+def _value(z: np.ndarray, b: np.ndarray, pushed: np.ndarray, softness: float) -> float:
     """Return the convex function of which F is the gradient; of a cone (P(y)^2)' is 2 P(y)."""
-    return float(0.5 * z @ z - b @ z + 0.5 * SOFTNESS * np.vdot(pushed, pushed))
+    return float(0.5 * z @ z - b @ z + 0.5 * softness * np.vdot(pushed, pushed))

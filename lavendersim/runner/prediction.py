@@ -19,6 +19,7 @@ from .planning import are_shared
 from .plans import shared_plans
 
 if TYPE_CHECKING:
+    from lavendersim.cell import CellConfig
     from lavendersim.scene.plan import Plan
 
     from .cell_jobs import Prepared
@@ -27,6 +28,11 @@ if TYPE_CHECKING:
 PER_STEP: Final = 2.7e-6  # [s]
 PER_CONTACT: Final = 1.5e-6  # [s] and step
 PER_CELL: Final = 4e-3  # [s]
+# Of another engine: its process, loaded anew (0.35 to 0.8 s); a step of a ball (1.3 to 17 us) with
+# what is read and sent of it; a contact, 1 us (MuJoCo) to 60 us (Drake). The middle of six engines.
+PER_PROCESS: Final = 0.5  # [s]
+PER_STEP_ELSEWHERE: Final = 50e-6  # [s]
+PER_CONTACT_ELSEWHERE: Final = 4e-6  # [s] and step
 TELLING: Final = 100  # cells whose contacts are counted; the others are taken to be like them
 MOST_CONTACTS: Final = 20  # of a body, by far
 WORTH_SAYING: Final = 60.0  # [s]
@@ -59,14 +65,20 @@ def is_short(experiment: Experiment, root: Path) -> bool:
     They are bounded by MOST_CONTACTS a body, as the bytes of `log_size` are.
     """
     cells = experiment.cells()
-    seconds = PER_CELL * len(cells)
+    seconds = 0.0
     for one in alike(cells):
         config = one[0].config
-        contacts = MOST_CONTACTS * len(config.scene.bodies)
-        seconds += len(one) * config.steps * (PER_STEP + PER_CONTACT * contacts)
+        seconds += len(one) * seconds_of(config, MOST_CONTACTS * len(config.scene.bodies))
     if seconds > min(WORTH_SAYING, LONGEST):
         return False
     return is_certainly_small(cells, free_bytes(root))
+
+
+def seconds_of(config: CellConfig, contacts: float) -> float:
+    """Return what a cell takes in one process [s], with so many contacts a step."""
+    if config.engine is None:
+        return PER_CELL + config.steps * (PER_STEP + PER_CONTACT * contacts)
+    return PER_PROCESS + config.steps * (PER_STEP_ELSEWHERE + PER_CONTACT_ELSEWHERE * contacts)
 
 
 def planned_before(experiment: Experiment, jobs: int) -> Prepared | None:
@@ -112,11 +124,8 @@ def predicted(
     cells = experiment.cells()
     steps = sum(len(one) * one[0].config.steps for one in alike(cells))
     sampled = cells[:: max(1, len(cells) // TELLING)]
-    work = sum(
-        one.config.steps * (PER_STEP + PER_CONTACT * expected_contacts(one.config))
-        for one in sampled
-    )
-    seconds = work * steps / sum(one.config.steps for one in sampled) + PER_CELL * len(cells)
+    work = sum(seconds_of(one.config, expected_contacts(one.config)) for one in sampled)
+    seconds = work * len(cells) / len(sampled)
     seconds /= min(jobs, len(cells))
     space = log_space(
         *(cells, lambda: plans or shared_plans(cells), experiment.text, root),

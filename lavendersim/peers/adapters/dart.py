@@ -113,6 +113,10 @@ class World:
         """Advance by one timestep."""
         self._world.step()
 
+    def is_full(self) -> bool:
+        """Return whether the last step had no room for more contacts."""
+        return bool(self._world.getLastCollisionResult().getNumContacts() >= MOST_CONTACTS)
+
     def contacts(self) -> list[tuple[float, ...]]:
         """Return the contacts of the last step. Normals and forces are on its first body: our B."""
         found = []

@@ -37,14 +37,13 @@ class World:
 
     def _contact(self, friction: float, restitution: float) -> str:
         """Return solref, solimp, margin and condim of a contact."""
-        get, dt = self._of.get, self._dt
+        get, dt, margin = self._of.get, self._dt, self._of.get("margin", 0.0)
         soft = dt * float(get("time_constant_steps", 0.0)) or get("time_constant", 0.02)
         reference, share = (soft, get("damping_ratio", 1.0)), get("impedance")
         if restitution > 0.0:  # (-stiffness, -damping): a free half swing keeps e of the speed
             reference, share = spring_of(restitution, dt), share or 0.9999
-        impedance = f'solimp="{share} {share} 0.001"' if share else ""
-        margin, dim = get("margin", 0.0), 3 if friction else 1
-        return f'solref="{_text(reference)}" {impedance} margin="{margin}" condim="{dim}"'
+        rest = f'solref="{_text(reference)}" margin="{margin}" condim="{3 if friction else 1}"'
+        return rest + (f' solimp="{share} {share} 0.001"' if share else "")
 
     def _geom(self, name: str, shape: Any, place: str, rest: str, meshes: list[str]) -> str:
         if shape.kind == "plane":
@@ -54,21 +53,18 @@ class World:
             corners = _text(number for point in shape.points for number in point)
             meshes.append(f'<mesh name="{name}" vertex="{corners}" inertia="convex"/>')
             form = f'type="mesh" mesh="{name}"'
-        elif shape.kind == "box":
-            form = f'type="box" size="{_text(0.5 * edge for edge in shape.size)}"'
         else:
-            size = (shape.radius, *((0.5 * shape.length,) if shape.kind != "sphere" else ()))
-            form = f'type="{shape.kind}" size="{_text(size)}"'
+            edges = shape.size if shape.kind == "box" else (2.0 * shape.radius,)
+            edges += (shape.length,) if shape.kind in ("capsule", "cylinder") else ()
+            form = f'type="{shape.kind}" size="{_text(0.5 * edge for edge in edges)}"'
         return f'<geom name="{name}" {form} {place} {rest}/>'
 
     def _xml(self, scene: Scene) -> str:
-        shared, bodies, pairs = scene.by_first(KEYS), [], []
-        meshes: list[str] = []
+        shared, bodies, pairs, meshes = scene.by_first(KEYS), [""], [""], [""]
         for body in scene.bodies:
             rest = 'contype="0" conaffinity="0"'
-            if shared is not None:
-                (mu, e), differ = shared[0][body.row], shared[1]
-                first = int(differ and not body.moves)  # its values are those of its contacts
+            if shared is not None:  # who comes first has the values of its contacts
+                first, (mu, e) = int(shared[1] and not body.moves), shared[0][body.row]
                 rest = f'priority="{first}" friction="{mu:.17g} 0 0" {self._contact(mu, e)}'
             geoms = "".join(self._geom(*part, rest, meshes) for part in _parts(body))
             place = f'pos="{_text(body.position)}" quat="{_text(body.orientation)}"'
@@ -82,10 +78,10 @@ class World:
             for (one, *_), (other, *_) in product(_parts(a), _parts(b)):
                 pairs.append(f'<pair geom1="{one}" geom2="{other}" {rest}/>')
         options = " ".join(f'{key}="{self._of[key]}"' for key in OPTIONS if key in self._of)
-        ahead = 'speculative="enable"' if self._of.get("speculative") else ""
         return f"""<mujoco><compiler autolimits="false" boundmass="0" boundinertia="0"/>
   <option timestep="{self._dt:.17g}" gravity="{_text(scene.gravity)}" {options}>
-  <flag autoreset="disable" {ahead}/></option><size memory="512M"/><asset>{"".join(meshes)}</asset>
+  <flag autoreset="disable" {'speculative="enable"' * bool(self._of.get("speculative"))}/></option>
+  <size memory="{self._of.get("memory", 512)}M"/><asset>{"".join(meshes)}</asset>
   <worldbody>{"".join(bodies)}</worldbody><contact>{"".join(pairs)}</contact></mujoco>"""
 
     def inertias(self) -> Floats:
@@ -129,16 +125,20 @@ class World:
         """Return those of the last step."""
         return int(np.max(self.data.solver_niter))
 
+    def is_full(self) -> bool:
+        """Return whether contacts, or their constraints, of any step yet had no room."""
+        full = mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL
+        return any(self.data.warning[one].number for one in full)
+
     def contacts(self) -> list[tuple[float, ...]]:
         """Return the contacts of the last step; RK4 leaves those of its last stage."""
-        found, force, rows = [], np.zeros(6), self._rows
+        told, force, rows = [], np.zeros(6), self._rows
         for k, one in enumerate(self.data.contact):
             mujoco.mj_contactForce(self.model, self.data, k, force)
             (n, t1, t2), push = one.frame.reshape(3, 3), force[:3] * self._dt
             slide = (*(push[1] * t1 + push[2] * t2), one.friction[0] if one.dim > 1 else 0.0)
-            place = rows[one.geom1], rows[one.geom2], *one.pos, *n, one.dist
-            found.append((*place, push[0], *slide))
-        return found
+            told.append((rows[one.geom1], rows[one.geom2], *one.pos, *n, one.dist, push[0], *slide))
+        return told
 
 
 def _parts(body: PeerBody) -> list[tuple[str, Any, str]]:

@@ -1,7 +1,8 @@
-"""What an engine has otherwise than it was described is said."""
+"""What an engine has otherwise than it was described is said, and a step that has no room."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from lavendersim.experiment import load_experiment_text
 from lavendersim.peers.catalogue import PEERS
 from lavendersim.peers.child import misbuilt
 from lavendersim.peers.description import Scene
-from tests.engines import BALL
+from tests.engines import BALL, log_of, needs, run_by
 
 
 class Built:
@@ -83,3 +84,47 @@ duration: 1
         why = misbuilt(scene, built, peer)
         assert why.startswith("MuJoCo has another friction between wall and ball: ")
         assert why.endswith(", expected 0.4")
+
+
+# 225 boxes 1 mm deep in a floor: 900 contacts, which take a megabyte as MuJoCo lays them out, and
+# four rows of constraint each, for which there is no room beside them; 512 have it.
+FLOOR_OF_BOXES = """
+scene:
+  surfaces: {rubber: {friction: 0.3}}
+  bodies:
+    floor: {shape: {kind: plane}, surface: rubber}
+  arrangements:
+    box: {kind: grid, counts: [15, 15, 1], spacing: [0.3, 0.3, 1], origin: [0, 0, 0.099],
+          body: {shape: {kind: box, size: [0.2, 0.2, 0.2]}, mass: 1, surface: rubber}}
+numerics: {timestep: 1/240}
+duration: 1/120
+"""
+
+
+@needs("mujoco")
+def test_a_step_whose_contacts_have_no_room_ends_the_run_with_a_sentence(tmp_path: Path) -> None:
+    """It is no step: states end before it. With more memory the same scene goes through."""
+    full = run_by(FLOOR_OF_BOXES, "mujoco", tmp_path, "engines: {mujoco: {memory: 1}}")
+    status = full.outcomes[0].status
+    assert status.startswith("failed: MuJoCo had no room for the contacts of a step (512 MB, or ")
+    assert status.endswith("after step 0")
+    assert log_of(full).step["step"].tolist() == [0]
+    enough = run_by(FLOOR_OF_BOXES, "mujoco", tmp_path)
+    assert enough.outcomes[0].status == "complete"
+    assert len(log_of(enough).step) == 3
+
+
+@needs("dart")
+def test_dart_is_full_where_it_has_as_many_contacts_as_it_takes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two boxes have a contact each, or more."""
+    from lavendersim.peers.adapters import dart
+
+    few = FLOOR_OF_BOXES.replace("[15, 15, 1]", "[2, 1, 1]")
+    scene = Scene(load_experiment_text(few, "boxes.yaml").cells()[0].config)
+    for most, is_full in ((1, True), (100, False)):
+        monkeypatch.setattr(dart, "MOST_CONTACTS", most)
+        world = dart.World(scene, {})
+        world.step()
+        assert world.is_full() == is_full

@@ -9,7 +9,7 @@ import pytest
 
 from lavendersim.peers import adapters
 from lavendersim.peers.catalogue import PEERS
-from lavendersim.peers.world import CountingWorld, World
+from lavendersim.peers.world import BoundedWorld, CountingWorld, World
 
 MOST_LINES = 150
 FOLDER = Path(adapters.__file__).parent
@@ -28,6 +28,8 @@ def test_an_adapter_is_short_and_has_every_method(name: str) -> None:
     assert {name for name in vars(World) if not name.startswith("_")} <= has
     counts = {name for name in vars(CountingWorld) if not name.startswith("_")}
     assert (counts <= has) == PEERS[name].counted
+    bounds = {name for name in vars(BoundedWorld) if not name.startswith("_")}
+    assert (bounds <= has) == PEERS[name].bounded
 
 
 def test_every_adapter_is_of_an_engine() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -16,6 +17,7 @@ from lavendersim.runner.log_size import LogSpace
 from lavendersim.runner.prediction import (
     LONGEST,
     PER_CELL,
+    PER_PROCESS,
     PER_STEP,
     WORTH_SAYING,
     Prediction,
@@ -23,6 +25,7 @@ from lavendersim.runner.prediction import (
     planned_before,
     predicted,
     predicted_together,
+    seconds_of,
 )
 from tests.drop_config import DROP
 
@@ -100,3 +103,12 @@ def test_cells_are_built_by_the_processes_that_plan_them_and_planned_once(
     monkeypatch.setattr(cell_jobs, "prepare", None)  # a second time it would be called
     finished = run(experiment, tmp_path, prepared=known, is_predicted=True)
     assert [cell.path.name for cell in finished.run.cells] == known.logs
+
+
+def test_cells_of_another_engine_take_a_process_each() -> None:
+    """Of a short run that is nearly all; so many drops by engines are asked about, not of ours."""
+    own: Any = drop("0.01").cells()[0].config
+    other: Any = SimpleNamespace(engine="mujoco", steps=own.steps)
+    assert seconds_of(other, 0.0) == pytest.approx(PER_PROCESS, rel=0.01)
+    many = LONGEST / PER_PROCESS
+    assert many * seconds_of(own, 0.0) < WORTH_SAYING < LONGEST < many * seconds_of(other, 0.0)
