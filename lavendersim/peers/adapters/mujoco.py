@@ -132,13 +132,13 @@ class World:
 
     def contacts(self) -> list[tuple[float, ...]]:
         """Return the contacts of the last step; RK4 leaves those of its last stage."""
-        told, force, rows = [], np.zeros(6), self._rows
+        seen, force, rows = [], np.zeros(6), self._rows
         for k, one in enumerate(self.data.contact):
             mujoco.mj_contactForce(self.model, self.data, k, force)
             (n, t1, t2), push = one.frame.reshape(3, 3), force[:3] * self._dt
             slide = (*(push[1] * t1 + push[2] * t2), one.friction[0] if one.dim > 1 else 0.0)
-            told.append((rows[one.geom1], rows[one.geom2], *one.pos, *n, one.dist, push[0], *slide))
-        return told
+            seen.append((rows[one.geom1], rows[one.geom2], *one.pos, *n, one.dist, push[0], *slide))
+        return seen
 
 
 def _parts(body: PeerBody) -> list[tuple[str, Any, str]]:
