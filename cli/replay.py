@@ -88,6 +88,12 @@ def replay(
             "--speed", metavar="X", help="Simulated seconds per second; slow by default if short."
         ),
     ] = None,
+    live: Annotated[
+        bool,
+        typer.Option(
+            "--live", help="Follow a cell that is still run, of the newest run by default."
+        ),
+    ] = False,
     allow_incomplete: AllowIncomplete = False,
 ) -> None:
     """Replay a run in rerun: bodies, contact forces and their plots over simulated time.
@@ -110,6 +116,12 @@ def replay(
     if other is None and (overlay or other_cell is not None):
         option = "--overlay" if overlay else "--other-cell"
         raise UsageError(f"{option}: name another run beside it")
+    if live:
+        asked = {"OTHER": other, "--at": at, "--screenshot": screenshot_to, "--video": video_to}
+        if given := [option for option, value in asked.items() if value is not None]:
+            raise UsageError(f"{given[0]}: leave it out, or --live: that shows a log as it grows")
+        _follow(run, runs, cell or 0, viewpoint, save_to)
+        return
     opened = open_run(run, runs, allow_incomplete)
     chosen = [cell_of(opened, cell or 0)]
     if other is not None:
@@ -150,6 +162,29 @@ def replay(
         viewer.open_viewer(shown_trace, title, at, viewpoint)
     if damaged:
         raise typer.Exit(printing.DAMAGED)
+
+
+def _follow(
+    run: Path | None, runs: Path, cell: int, viewpoint: Viewpoint, save_to: Path | None
+) -> None:
+    """Show a cell of a run that goes on."""
+    from lavendersim import replay as viewer
+    from lavendersim.errors import UsageError
+    from lavendersim.runner import open_run
+    from lavendersim.runner.run_directory import list_runs
+    from lavendersim.runner.run_lock import is_locked
+
+    if run is None:
+        found = list_runs(runs)
+        if not found:
+            raise UsageError(f"{runs} has no run: start one with `lavender run CONFIG`")
+        run = found[-1].path
+    opened = open_run(run, runs, True)
+    chosen = cell_of(opened, cell)
+    title = f"{opened.path.name} {chosen.label}".strip()
+    viewer.follow(chosen.path, lambda: is_locked(opened.path), title, viewpoint, save_to=save_to)
+    if save_to is not None:
+        typer.echo(save_to)
 
 
 def viewpoint_of(camera: str, follow: str, speed: float | None) -> Viewpoint:

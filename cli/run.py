@@ -15,6 +15,7 @@ from lavender_cli import claims, overheads, printing, progress, time_errors
 from lavender_cli.completion import run_names
 from lavender_cli.drawing import Drawing
 from lavender_cli.going_on import command_of, interruptible, on_full_disk
+from lavender_cli.live import shown_live
 from lavender_cli.prediction import Yes, confirm, with_refined
 from lavender_cli.watch import again
 
@@ -145,6 +146,9 @@ def run(
     shard: Annotated[
         str | None, typer.Option("--shard", metavar="K/N", help="With --into: part K of N.")
     ] = None,
+    live: Annotated[
+        bool, typer.Option("--live", help="Show the first cell in rerun's viewer as it is run.")
+    ] = False,
     watch: Annotated[
         bool, typer.Option("--watch", help="Run again whenever a file of it is saved.")
     ] = False,
@@ -161,6 +165,7 @@ def run(
         asked = {"--plot": plot, "--refine": refine, "--resume": resume, "--json": as_json}
         asked |= {
             "--quick": quick,
+            "--live": live,
             "--tag": bool(tags),
             "--executor": executor is not None,
             "--dask": dask is not None,
@@ -169,6 +174,10 @@ def run(
         _run_shard(configs, overrides, strict, _Place(into, shard), jobs, asked)
         return
 
+    if live:
+        from lavendersim.replay.drivers import require_display
+
+        require_display()
     if executor not in (None, DASK):
         raise typer.BadParameter(f"{executor!r}, expected {DASK!r}", param_hint="--executor")
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
@@ -207,6 +216,8 @@ def run(
             printing.warn_of_mistakes(experiment)
             with on_full_disk(command), ExitStack() as open_now:
                 shown = open_now.enter_context(progress.reporting(experiment.name))
+                if live:
+                    shown = shown._replace(began=open_now.enter_context(shown_live()))
                 workers: Executor | None = None
                 if executor is not None or dask is not None:
                     from lavendersim.runner.dask_cluster import dask_workers

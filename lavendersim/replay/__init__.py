@@ -7,6 +7,7 @@ scales, colours and places what was recorded.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from lavendersim.replay.pair import LogPair
     from lavendersim.trace import Trace
 
-__all__ = ["Viewpoint", "open_viewer", "pair_of", "save", "screenshot", "video"]
+__all__ = ["Viewpoint", "follow", "open_viewer", "pair_of", "save", "screenshot", "video"]
 
 
 def pair_of(a: Trace, b: Trace, names: tuple[str, str], overlay: bool = False) -> LogPair:
@@ -42,6 +43,25 @@ def open_viewer(
     from lavendersim.replay.viewer import show_in_window
 
     show_in_window(trace, title or Path(trace.path).stem, at, viewpoint)
+
+
+def follow(
+    path: Path,
+    is_written: Callable[[], bool],
+    title: str | None = None,
+    viewpoint: Viewpoint = DEFAULT_VIEW,
+    *,
+    save_to: Path | None = None,
+) -> None:
+    """Show a log in a rerun window as it grows, until it is whole or nobody writes it any more.
+
+    is_written: whether somebody may write more. save_to: writes a recording (.rrd) in place of the
+    window. Raises MissingDriverError where there is no display to open a window on, TraceError
+    where nothing whole was ever written.
+    """
+    from lavendersim.replay.live import follow_file
+
+    follow_file(path, is_written, title or Path(path).stem, viewpoint, save_to)
 
 
 def save(

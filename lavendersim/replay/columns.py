@@ -130,10 +130,20 @@ def time_in_nanoseconds(trace: Trace) -> npt.NDArray[np.int64]:
     return np.asarray(trace.step["time_ns"], dtype=np.int64)
 
 
-def send(stream: rr.RecordingStream, trace: Trace, room: Extent, scale: ForceScale | None) -> None:
-    """Send everything that changes from step to step; contacts where there is a scale for them."""
-    send_scene(stream, trace, room, scale)
-    _send_plots(stream, trace, time_in_nanoseconds(trace).astype("timedelta64[ns]"))
+def send(
+    stream: rr.RecordingStream,
+    trace: Trace,
+    room: Extent,
+    scale: ForceScale | None,
+    since: int = 0,
+) -> None:
+    """Send everything that changes from step to step; contacts where there is a scale for them.
+
+    since: the row of the log that is the first to be sent.
+    """
+    send_scene(stream, trace, room, scale, since=since)
+    times = time_in_nanoseconds(trace).astype("timedelta64[ns]")
+    _send_plots(stream, trace, times, since)
 
 
 def send_scene(
@@ -142,17 +152,18 @@ def send_scene(
     room: Extent,
     scale: ForceScale | None,
     layer: Layer = ALONE,
+    since: int = 0,
 ) -> None:
     """Send what changes in the scene: poses, contacts, and what is removed."""
     times = time_in_nanoseconds(trace).astype("timedelta64[ns]")
-    _send_poses(stream, trace, times, layer)
+    _send_poses(stream, trace, times, layer, since)
     if scale is not None:
-        _send_contacts(stream, trace, room, scale, layer)
+        _send_contacts(stream, trace, room, scale, layer, since)
     clear_removed(stream, trace, time_in_nanoseconds(trace), [BODIES, GRIDS], layer)
 
 
 def _send_poses(
-    stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any], layer: Layer
+    stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any], layer: Layer, since: int
 ) -> None:
     given = trace.config.scene.bodies
     recorded, pose = trace.recorded_pose
@@ -163,6 +174,7 @@ def _send_poses(
         rows = np.flatnonzero(np.isfinite(pose[:, body]).all(axis=1))
         if len(rows) and (pose[rows, body] == pose[rows[0], body]).all():
             rows = rows[:1]  # it never moves: one row is enough
+        rows = rows[recorded[rows] >= since]
         for block in blocks(len(rows)):
             here = rows[block]
             columns = rr.Transform3D.columns(
@@ -180,6 +192,7 @@ def _send_contacts(
     room: Extent,
     scale: ForceScale,
     layer: Layer,
+    since: int,
 ) -> None:
     times = time_in_nanoseconds(trace).astype("timedelta64[ns]")
     thickness = arrow_thickness(trace, room)
@@ -190,6 +203,7 @@ def _send_contacts(
 
     contact = contacts_of(trace)
     recorded = trace.recorded_rows("/contacts")
+    recorded = recorded[recorded >= since]
     steps, times = trace.step["step"][recorded], times[recorded]
     first = np.searchsorted(contact["step"], steps, side="left")
     end = np.searchsorted(contact["step"], steps, side="right")
@@ -224,7 +238,9 @@ def _vectors(rows: npt.NDArray[Any], x: str, y: str, z: str) -> npt.NDArray[np.f
     return np.stack([rows[x], rows[y], rows[z]], axis=-1).reshape(-1, 3)
 
 
-def _send_plots(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any]) -> None:
+def _send_plots(
+    stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any], since: int
+) -> None:
     for plot in plots_of(trace):
         look: dict[str, Any] = {"colors": [plot.colour], "names": [plot.title]}
         style = (
@@ -234,7 +250,7 @@ def _send_plots(stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any
             else rr.SeriesLines(widths=[1.5], aggregation_policy="MinMax", **look)
         )
         stream.log(plot.entity, style, static=True)
-        send_curve(stream, plot.entity, times, values_of(trace, plot))
+        send_curve(stream, plot.entity, times[since:], values_of(trace, plot)[since:])
 
 
 def send_curve(

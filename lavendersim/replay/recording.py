@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from lavendersim.errors import UsageError
 from lavendersim.replay import columns, scene
 from lavendersim.replay.blueprint import blueprint
 from lavendersim.replay.camera import camera_of
-from lavendersim.replay.force_scale import force_scale
+from lavendersim.replay.force_scale import ForceScale, force_scale
 from lavendersim.replay.pair import LogPair
 from lavendersim.replay.pair_recording import record_pair
 from lavendersim.replay.viewpoint import DEFAULT_VIEW, Viewpoint
@@ -45,16 +46,22 @@ def record(
         record_pair(trace, stream, title, viewpoint)
         return
     bodies = scene.shapes(trace.config)
-    room = scene.extent(trace, bodies)
-    # Where nothing can touch there are no contacts to place and no forces to scale.
-    touching = trace.has("/contacts")
-    scale = force_scale(columns.contacts_of(trace), room.diagonal) if touching else None
-
+    room, scale = measures_of(trace, bodies)
     stream.send_recording_name(title)
     camera = camera_of(trace, bodies, room, viewpoint)
     stream.send_blueprint(blueprint(trace, bodies, room, scale, camera, viewpoint.speed))
     scene.draw(stream, trace, bodies, scene.Stage(room, camera))
     columns.send(stream, trace, room, scale)
+
+
+def measures_of(
+    trace: Trace, bodies: Sequence[scene.DrawnBody]
+) -> tuple[scene.Extent, ForceScale | None]:
+    """Return the room that bodies take, and how long forces are drawn; None where none can act."""
+    room = scene.extent(trace, bodies)
+    # Where nothing can touch there are no contacts to place and no forces to scale.
+    touching = trace.has("/contacts")
+    return room, force_scale(columns.contacts_of(trace), room.diagonal) if touching else None
 
 
 def write_rrd(

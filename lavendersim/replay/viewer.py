@@ -36,15 +36,20 @@ def show_in_window(
     viewpoint: Viewpoint = DEFAULT_VIEW,
 ) -> None:
     """Open the viewer (or use the open one), send it the trace, and stop it at a moment [s]."""
-    require_display()
     moment = None if at is None else moment_to_show(trace, at)
     stream = new_stream(title)
-    rr.spawn(executable_path=str(viewer_program()), recording=stream)
+    open_window(stream)
     record(trace, stream, title, viewpoint)
     stream.flush(timeout_sec=60.0)
     if moment is not None:
         stop_at(moment, str(stream.get_recording_id()))
     stream.disconnect()
+
+
+def open_window(stream: rr.RecordingStream) -> None:
+    """Open the viewer, or use the open one, for a stream."""
+    require_display()
+    rr.spawn(executable_path=str(viewer_program()), recording=stream)
 
 
 def stop_at(moment: np.timedelta64, recording: str, url: str = VIEWER) -> None:

@@ -273,6 +273,7 @@ def _run_cells(
     directory = pending[0].path.parent.parent
     # The index stands from the start, so that an interrupted run can be listed and replayed.
     write_index(directory / CELLS, _index_of(experiment, pending, configs, ended))
+    progress.began(directory)
     left = [job for path, job in by_log.items() if path not in ended]
     try:  # what ends meanwhile is noted beside it: see `run_index`
         with handled():

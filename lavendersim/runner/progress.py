@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from pathlib import Path
 from threading import Lock
 from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
@@ -127,6 +128,7 @@ class Tally:
 class Progress(NamedTuple):
     """What a caller may want to show while a sweep runs; every hook may be left as it is."""
 
+    began: Callable[[Path], None] = lambda directory: None  # when its cells can be listed
     compiling: Callable[[Compilation], None] = lambda begun: None
     compiled: Callable[[Compilation], None] = lambda ended: None
     running: Callable[[Tally], None] = lambda tally: None  # once, before the first cell

@@ -40,6 +40,20 @@ def run_lock(directory: Path) -> Iterator[None]:
         os.close(handle)
 
 
+def is_locked(directory: Path) -> bool:
+    """Whether a process, this one or another, runs cells in a directory."""
+    if fcntl is None:
+        return True
+    handle = os.open(directory, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(handle)
+    return False
+
+
 def _begin_forked() -> None:
     """Let the lock end with the process that took it, whatever was forked of it."""
     while _locked:

@@ -1,0 +1,109 @@
+"""A log that grows is shown as its finished log is, row by row, whatever was whole when."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from recordings import column, read, times
+
+from lavendersim import replay
+from lavendersim.errors import TraceError
+from lavendersim.replay import columns, live
+from lavendersim.replay.recording import new_stream
+from lavendersim.runner import run
+from lavendersim.trace import open_trace
+
+# A ball that falls 5 m and bounces: room and forces grow while it is shown.
+THROWN = """\
+scene:
+  bodies:
+    floor: {shape: {kind: plane}}
+    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1.0, position: [0, 0, 5], velocity: [3, 0, 0],
+           surface: {restitution: 0.8}}
+numerics: {preset: chapter, timestep: 1/2000}
+duration: 4.0
+"""
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("grown")
+    config = folder / "thrown.yaml"
+    config.write_text(THROWN)
+    return run(config, folder / "runs").run.cells[0].path
+
+
+def looks(whole, folder, shares):
+    """Return what is whole of a log when so much of it was written, one after the other."""
+    data = whole.read_bytes()
+    for number, share in enumerate(shares):
+        path = folder / f"{number}.mcap"
+        path.write_bytes(data[: int(share * len(data))])
+        try:
+            yield open_trace(path, allow_incomplete=True)
+        except TraceError:
+            yield None
+
+
+def followed(whole, folder, shares, monkeypatch):
+    """Follow a log that has grown to these shares; returns columns by entity, and rows sent."""
+    each, rests, sent = looks(whole, folder, shares), [], []
+    send = columns.send
+
+    def noted(stream, trace, room, scale, since=0):
+        sent.append((since, len(trace.step)))
+        send(stream, trace, room, scale, since)
+
+    monkeypatch.setattr(columns, "send", noted)
+    stream = new_stream("grown")
+    stream.save(folder / "live.rrd")
+    log = live.Log(lambda: next(each), lambda: len(rests) + 1 < len(shares))
+    last = live.follow(log, stream, "grown", rest=rests.append)
+    stream.flush()
+    stream.disconnect()
+    assert len(rests) == len(shares) - 1
+    assert all(rest >= live.PAUSE for rest in rests)
+    return last, read(folder / "live.rrd")[0], sent
+
+
+def places(moving):
+    """Return where the ball is by time: what was sent last counts."""
+    batches = moving["/bodies/ball"]
+    found = zip(times(batches), column(batches, "Transform3D:translation"), strict=True)
+    return {int(time): place[0] for time, place in found}
+
+
+def test_every_row_is_shown_as_of_the_finished_log(whole, tmp_path, monkeypatch):
+    shares = (0.001, 0.3, 0.5, 0.55, 0.8, 1.0)
+    last, moving, sent = followed(whole, tmp_path, shares, monkeypatch)
+    assert not last.damage
+    replay.save(open_trace(whole), tmp_path / "whole.rrd")
+    assert places(moving) == places(read(tmp_path / "whole.rrd")[0])
+    assert len(places(moving)) == len(open_trace(whole).step)
+    # Some looks found new rows alone, and no row was left out between two of them.
+    assert any(since > 0 for since, _ in sent)
+    for (_, before), (since, _) in pairwise(sent):
+        assert since in (0, before)
+
+
+def test_what_is_cut_is_shown_up_to_its_end(whole, tmp_path, monkeypatch):
+    last, moving, _ = followed(whole, tmp_path, (0.2, 0.6), monkeypatch)
+    assert last.damage
+    known = open_trace(whole).step["time_ns"][: len(last.step)]
+    assert np.array_equal(sorted(places(moving)), known)
+
+
+def test_a_log_that_never_began_is_a_sentence(tmp_path):
+    with pytest.raises(TraceError, match=r"none\.mcap: nothing was written that could be shown"):
+        live.follow_file(
+            tmp_path / "none.mcap", lambda: False, "none", live.DEFAULT_VIEW, tmp_path / "a.rrd"
+        )
+    assert not (tmp_path / "a.rrd").exists()
+
+
+def test_a_whole_log_is_shown_once(whole, tmp_path):
+    live.follow_file(whole, lambda: True, "whole", live.DEFAULT_VIEW, tmp_path / "a.rrd")
+    rows = sum(batch.num_rows for batch in read(tmp_path / "a.rrd")[0]["/bodies/ball"])
+    assert rows == len(open_trace(whole).step)
