@@ -16,7 +16,7 @@ from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
 from .joint_turn import make_joint_velocity
-from .records import PLANE
+from .records import LOOSE, PLANE
 from .row_terms import row_terms
 from .spec import Spec
 from .vectors import Vec3, dot, length
@@ -103,13 +103,13 @@ def make_lasting(spec: Spec) -> Any:
     def is_twisted(v, m):
         return v.wx != m.wx or v.wy != m.wy or v.wz != m.wz
 
-    is_twisted = kernel(is_twisted, spec)
+    twisted: Any = kernel(is_twisted, spec) if turns else None
 
     def lasting(contact, velocities, motion, params):
         contact.begin_n = contact.v_n_pre - contact.dv_n
         if turns:
             a, b = contact.a, contact.b
-            if is_twisted(velocities[a], motion[a]) or is_twisted(velocities[b], motion[b]):
+            if twisted(velocities[a], motion[a]) or twisted(velocities[b], motion[b]):
                 # dv_n is without what torques change.
                 contact.begin_n = normal_velocity(contact, motion[a], motion[b])
         contact.middle_n = contact.begin_n
@@ -276,7 +276,8 @@ def make_widen(spec: Spec) -> Any:
         if contact.phi > params.slop and opens > 0.0:
             mean = contact.v_n_pre - 0.5 * contact.dv_n
             if contact.phi + (mean + opens) * params.dt > -params.slop:
-                contact.target = max(contact.target, -contact.v_n_pre)
+                free = -contact.v_n_pre + LOOSE * (1.0 + abs(contact.v_n_pre))
+                contact.target = max(contact.target, free)
             contact.target += opens
 
     return kernel(widen, spec)

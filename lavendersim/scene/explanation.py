@@ -141,8 +141,11 @@ def _brought(spec: Spec, effect: Effect) -> Kernels:
     dependents = [e.name for e in EFFECTS if spec.has(e.name) and effect.name in needs(e.name)]
     lean = spec.without(*dependents)
     gone = _without(composed_kernels(lean), composed_kernels(lean.without(effect.name)))
+    composed = composed_kernels(spec)
+    # Without its dependents an engine may have kernels that those make needless.
+    gone = _common(gone, composed)
     gone = {module: names for module, names in gone.items() if not _of_an_effect(module)}
-    kept = composed_kernels(spec).get(own)
+    kept = composed.get(own)
     return ({own: kept} if kept else {}) | gone
 
 

@@ -15,7 +15,7 @@ but where it is the only one (`repeated_bounces`).
 from math import sqrt
 from typing import Any
 
-from ..records import TOUCHING
+from ..records import LOOSE, TOUCHING
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Fields, Hooks, kernel
 
@@ -71,7 +71,7 @@ def make_foresee(spec):
         rest = dt - tau
         if rest <= 0.0:
             if flown and contact.phi >= -params.slop:  # and beyond the step
-                contact.target = -contact.v_n_pre
+                contact.target = -contact.v_n_pre + LOOSE * (1.0 + abs(contact.v_n_pre))
             return
         e = contact.e
         if falls:

@@ -49,9 +49,10 @@ def test_a_chunk_of_poses_costs_the_steps_of_its_group(log: Logged, tmp_path: Pa
     found = scan(damaged(log, tmp_path, (place, 8)))
     assert found.groups == [whole[0], *whole[2:]]
     lost = whole[1]
-    times = f"t = {lost.first / 240:.3f}"
+    # Steps are numbered from the state at the start: those before and after it are whole.
+    times = f"t = {(lost.first - 1) / 240:.9g} to {(lost.last + 1) / 240:.9g} s"
     (said,) = found.lost
-    assert said.startswith(f"steps {lost.first} to {lost.last} ({times[:7]}")
+    assert said == f"steps {lost.first} to {lost.last} ({times})"
 
 
 def test_a_log_that_was_cut_ends_with_its_last_group(log: Logged, tmp_path: Path) -> None:

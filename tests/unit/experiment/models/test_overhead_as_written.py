@@ -62,5 +62,5 @@ def test_all_or_a_list_of_names() -> None:
     ]
     assert_refused(
         config(overhead="{effects: §drag}"),
-        'effects: expected all, or a list of effects, found the text "drag"',
+        'effects: expected all, required, or a list of effects, found the text "drag"',
     )
