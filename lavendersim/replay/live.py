@@ -30,7 +30,7 @@ SHARE: Final = 4.0  # and so many times what the last one took: a long log is re
 GROWTH: Final = 1.5  # of a room or of a scale, beyond which all is drawn anew
 
 
-class Log(NamedTuple):
+class GrowingLog(NamedTuple):
     """A log that may still grow."""
 
     opened: Callable[[], Trace | None]  # what is whole of it; None where nothing is yet
@@ -44,7 +44,7 @@ class _Shown(NamedTuple):
 
 
 def follow(
-    log: Log,
+    log: GrowingLog,
     stream: rr.RecordingStream,
     title: str,
     viewpoint: Viewpoint = DEFAULT_VIEW,
@@ -84,7 +84,7 @@ def follow_file(
             return None
 
     stream = new_stream(title)
-    log = Log(opened, is_written)
+    log = GrowingLog(opened, is_written)
     try:
         if save_to is None:
             open_window(stream)
@@ -99,7 +99,7 @@ def follow_file(
 
 
 def _all_of(
-    log: Log, stream: rr.RecordingStream, title: str, viewpoint: Viewpoint, path: Path
+    log: GrowingLog, stream: rr.RecordingStream, title: str, viewpoint: Viewpoint, path: Path
 ) -> None:
     if follow(log, stream, title, viewpoint) is None:
         raise TraceError(f"{path}: nothing was written that could be shown")

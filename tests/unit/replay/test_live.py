@@ -59,7 +59,7 @@ def followed(whole, folder, shares, monkeypatch):
     monkeypatch.setattr(columns, "send", noted)
     stream = new_stream("grown")
     stream.save(folder / "live.rrd")
-    log = live.Log(lambda: next(each), lambda: len(rests) + 1 < len(shares))
+    log = live.GrowingLog(lambda: next(each), lambda: len(rests) + 1 < len(shares))
     last = live.follow(log, stream, "grown", rest=rests.append)
     stream.flush()
     stream.disconnect()
