@@ -19,7 +19,7 @@ from lavendersim.engine.collide import SHAPE_PAIRS
 
 CONFIGS = int(os.environ.get("LAVENDER_TEST_FUZZ", "150"))
 ENGINES = {"everything": FULL, **{f"drawn {k}": plan for k, plan in enumerate(drawn_plans(1))}}
-# Finds that are not mended: what is drawn breaks these and no others. Bodies that begin 19 m
+# Finds that are not fixed: what is drawn breaks these and no others. Bodies that begin 19 m
 # inside each other are a metre deeper than they can have moved since impacts of slow falls have
 # their time; what carries them there is not known.
 KNOWN = [["penetration: 20.69 m in step 13, of at most 19.51 m"]]
