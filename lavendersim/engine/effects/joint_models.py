@@ -44,15 +44,11 @@ DRIVEN_POINT = 3
 ABOUT, ALONG = 8, 11  # directions of what moves about, or along, z: of the motor, the stops follow
 
 
-class Joint(ConfigModel):
-    """What all joints have: two bodies, and a place."""
+class Connection(ConfigModel):
+    """What joints and ropes have: two bodies."""
 
     kind: str
     between: _Names = ModelField(description="names of two bodies, of which at least one moves")
-    at: _Point = ModelField(description="[m] the point that they share, as the run begins")
-    collide: bool = ModelField(
-        default=False, description="whether the two bodies also touch each other"
-    )
 
     @classmethod
     def rules(cls, at: Any) -> None:
@@ -66,6 +62,15 @@ class Joint(ConfigModel):
     def name_of_pair(self) -> str:
         """Return its bodies, for a sentence."""
         return " and ".join(self.between)
+
+
+class Joint(Connection):
+    """What all joints have: two bodies, and a place."""
+
+    at: _Point = ModelField(description="[m] the point that they share, as the run begins")
+    collide: bool = ModelField(
+        default=False, description="whether the two bodies also touch each other"
+    )
 
     @property
     def rows(self) -> tuple[RowOfJoint, ...]:

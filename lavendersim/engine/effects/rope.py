@@ -14,14 +14,13 @@ from typing import Annotated, Any, Literal
 from pydantic import Field as ModelField
 from pydantic import Strict
 
-from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import BodyName, NewName
 from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 
 from ..spec import Spec
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
-from .joint_models import AnyJoint, Joint
+from .joint_models import AnyJoint, Connection, Joint
 from .keys import SceneKey, TurnOf
 
 _CENTRE: Vector3 = (0.0, 0.0, 0.0)
@@ -32,11 +31,10 @@ _Names = Annotated[tuple[BodyName, ...], Strict(False), _TWO]
 _Points = Annotated[tuple[_Point, ...], Strict(False), _TWO]
 
 
-class Rope(ConfigModel):
+class Rope(Connection):
     """A rope without mass between two points, each of a body: it is never longer than it is."""
 
     kind: Literal["rope"] = ModelField(description="`rope`")
-    between: _Names = ModelField(description="names of two bodies, of which at least one moves")
     points: _Points = ModelField(
         default=(_CENTRE, _CENTRE),
         description="[m] where it is tied, each in the frame of its body; 0 is the centre of mass",
@@ -47,19 +45,6 @@ class Rope(ConfigModel):
     restitution: Annotated[float, Quantity(minimum=0, maximum=1)] = ModelField(
         default=0.0, description="[-] of the speed at which it becomes taut, what it throws back"
     )
-
-    @classmethod
-    def rules(cls, at: Any) -> None:
-        """Its ends are tied to two bodies."""
-        names = [one.text for one in at.get("between").items]
-        if len(names) == 2 and names[0] is not None and names[0] == names[1]:
-            sentence = f'"{names[0]}" twice; expected two bodies'
-            at.refuse(at.get("between").mark, f"between: {sentence}")
-
-    @property
-    def name_of_pair(self) -> str:
-        """Return its bodies, for a sentence."""
-        return " and ".join(self.between)
 
 
 Connections = dict[NewName, Annotated[Rope | AnyJoint, ModelField(discriminator="kind")]]
