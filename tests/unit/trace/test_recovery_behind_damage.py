@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import tracemalloc
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -209,9 +210,9 @@ def test_memory_does_not_grow_with_the_log(whole: Log, tmp_path: Path) -> None:
         path = write(tmp_path / f"{groups}.mcap", [run(whole.first() * groups, contacts=8)])
         path.write_bytes(flipped(path.read_bytes(), 200_000))
         recover(path).out.unlink()  # type: ignore[union-attr]  # imports, caches
+        gc.collect()  # so that it is soon looked for again, and none of this piles up
         tracemalloc.start()
         recover(path)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    # Of four times the log; how much garbage lies about then is up to whoever ran before.
-    assert peaks[1] < 1.5 * peaks[0]
+    assert peaks[1] < 1.3 * peaks[0]
