@@ -15,8 +15,9 @@ from .collide.records import UNBOUNDED
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
+from .free_flight import target_of_flight
 from .joint_turn import make_joint_velocity
-from .records import LOOSE, PLANE
+from .records import PLANE
 from .row_terms import row_terms
 from .spec import Spec
 from .vectors import Vec3, dot, length
@@ -276,8 +277,7 @@ def make_widen(spec: Spec) -> Any:
         if contact.phi > params.slop and opens > 0.0:
             mean = contact.v_n_pre - 0.5 * contact.dv_n
             if contact.phi + (mean + opens) * params.dt > -params.slop:
-                free = -contact.v_n_pre + LOOSE * (1.0 + abs(contact.v_n_pre))
-                contact.target = max(contact.target, free)
+                contact.target = max(contact.target, target_of_flight(contact.v_n_pre))
             contact.target += opens
 
     return kernel(widen, spec)

@@ -34,9 +34,6 @@ ROPE_END: Final = -1  # where a rope or a joint is on a body: `collide.rope`, `c
 # Far above: bodies would hover visibly before they touch.
 TOUCHING: Final = 1e-9
 
-# Room [m/s, and of the velocity] that a row leaves a body that flies: round-off must not push it,
-# for what a contact pushes is carried by the velocity of the step's end.
-LOOSE: Final = 1e-12
 
 # Length of a part of a step that is an impact: forces have no time to act in it [s].
 INSTANT: Final = 1e-12

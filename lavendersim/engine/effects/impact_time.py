@@ -15,7 +15,8 @@ but where it is the only one (`repeated_bounces`).
 from math import sqrt
 from typing import Any
 
-from ..records import LOOSE, TOUCHING
+from ..free_flight import target_of_flight
+from ..records import TOUCHING
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Fields, Hooks, kernel
 
@@ -71,7 +72,7 @@ def make_foresee(spec):
         rest = dt - tau
         if rest <= 0.0:
             if flown and contact.phi >= -params.slop:  # and beyond the step
-                contact.target = -contact.v_n_pre + LOOSE * (1.0 + abs(contact.v_n_pre))
+                contact.target = target_of_flight(contact.v_n_pre)
             return
         e = contact.e
         if falls:

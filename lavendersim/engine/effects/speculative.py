@@ -7,7 +7,7 @@ within the slop of each other rest where they are: closing gaps of round-off siz
 stack moving.
 """
 
-from ..records import LOOSE
+from ..free_flight import target_of_flight
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Hooks, kernel
 
@@ -34,8 +34,7 @@ def make(spec):
                 # row must not brake what does not touch.
                 closed = (contact.v_n_pre - share * contact.dv_n) * params.dt
                 if contact.phi + closed > -params.slop:
-                    free = -contact.v_n_pre + LOOSE * (1.0 + abs(contact.v_n_pre))
-                    contact.target = max(contact.target, free)
+                    contact.target = max(contact.target, target_of_flight(contact.v_n_pre))
 
     return kernel(speculative, spec)
 
