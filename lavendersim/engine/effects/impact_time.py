@@ -15,7 +15,6 @@ but where it is the only one (`repeated_bounces`).
 from math import sqrt
 from typing import Any
 
-from ..free_flight import target_of_flight
 from ..records import TOUCHING
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Fields, Hooks, kernel
@@ -38,6 +37,7 @@ def make_foresee(spec):
 
     alone: its bodies have no other contact.
     """
+    from ..free_flight import target_of_flight
     from ..repeated_bounces import bounces_repeat, make_bounce_on
     from ..row_terms import row_terms
     from . import has_hook, made_once

@@ -7,7 +7,6 @@ within the slop of each other rest where they are: closing gaps of round-off siz
 stack moving.
 """
 
-from ..free_flight import target_of_flight
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Hooks, kernel
 
@@ -21,6 +20,7 @@ def decide(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(contact, pair, params)`."""
+    from ..free_flight import target_of_flight
 
     # Without either, a body moves through the whole step with the velocity it ends it with.
     flies = spec.has("midpoint") or spec.has("impact_time")
