@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from time import perf_counter_ns
@@ -37,6 +37,7 @@ from .call_length import CallLength, block_steps
 from .cell_outcome import CellOutcome, EndedCell, note_measured
 from .environment import versions
 from .freed_memory import keep_freed_memory
+from .in_turns import in_turns
 from .interruption import deferred, raise_noted
 from .measured import Measured, measure_cell
 from .problem_dump import ProblemDump
@@ -188,34 +189,34 @@ def compile_kernel(job: CellJob) -> int:
     return started(build(job.config, job.plan.spec), job.plan, 0)[1]
 
 
-def run_and_measure(job: CellJob, began: Began | None = None) -> EndedCell:
-    """Simulate one cell, write its log, and measure it for each cell of the sweep that it is of.
+def run_and_measure(jobs: Sequence[CellJob], began: Began | None = None) -> list[EndedCell]:
+    """Simulate cells, write their logs, and measure each for the cells of the sweep that it is of.
 
-    What ended is noted in the directory of its run.
+    Several are short: of one, a stage takes the processor less time than to fetch the code of that
+    stage into its caches, so each stage is done for all before the next. What ended is noted in the
+    directory of the run. began: called when the kernel of the first is there.
     """
     keep_freed_memory()
-
-    def closed(outcome: CellOutcome) -> None:
-        assert outcome.log is not None
-        note_ended(job.path, outcome.status, outcome.log)
-        raise_noted()
-
-    ended = measured_run(job, began, closed)
-    note_measured(job.path, ended)
+    simulated = _simulate(jobs, began, _note_closed)
+    raise_noted()
+    ended = [_measured(job, one) for job, one in zip(jobs, simulated, strict=True)]
+    for job, one in zip(jobs, ended, strict=True):
+        note_measured(job.path, one)
     return ended
 
 
-def measured_run(
-    job: CellJob,
-    began: Began | None = None,
-    closed: Callable[[CellOutcome], None] = lambda outcome: None,
-) -> EndedCell:
-    """Simulate one cell, write its log, and measure it; nothing is noted.
+def _note_closed(job: CellJob, outcome: CellOutcome) -> None:
+    assert outcome.log is not None
+    note_ended(job.path, outcome.status, outcome.log)
 
-    closed: called when the log is, before it is measured.
-    """
-    outcome, written, worst = simulate(job, began)
-    closed(outcome)
+
+def measured_run(job: CellJob) -> EndedCell:
+    """Simulate one cell, write its log, and measure it; nothing is noted."""
+    return _measured(job, simulate(job))
+
+
+def _measured(job: CellJob, simulated: Simulated) -> EndedCell:
+    outcome, written, worst = simulated
     trace = trace_of(written)
     measured = {}
     for index, label, coordinates in job.cells:
@@ -253,18 +254,57 @@ def simulate(job: CellJob, began: Began | None = None) -> Simulated:
 
     began: called when its kernel is there, with what reads how many steps are done, at any time.
     """
-    if job.config.engine is not None:
+    return _simulate([job], began)[0]
+
+
+def _simulate(
+    jobs: Sequence[CellJob],
+    began: Began | None,
+    closed: Callable[[CellJob, CellOutcome], None] = lambda job, outcome: None,
+) -> list[Simulated]:
+    """Simulate cells together; closed: called when a log is. One of another engine is alone."""
+    if jobs[0].config.engine is not None:
         from .other_engine import simulate_elsewhere  # late: most cells have no other
 
-        return Simulated(*simulate_elsewhere(job, began))
-    physics_ns = logging_ns = 0
-    scene, steps = build(job.config, job.plan.spec), job.config.steps
-    engine, compile_ns = started(scene, job.plan, steps)
+        [job] = jobs
+        one = Simulated(*simulate_elsewhere(job, began))
+        closed(job, one.outcome)
+        return [one]
+    scenes = [build(job.config, job.plan.spec) for job in jobs]
+    ready = [
+        started(scene, job.plan, job.config.steps) for job, scene in zip(jobs, scenes, strict=True)
+    ]
     if began is not None:
-        began(lambda: int(engine.counters["step"][0]))
+        counters = ready[0][0].counters
+        began(lambda: int(counters["step"][0]))
+
+    def noted(job: CellJob, stages: Generator[None, None, Simulated]) -> Any:
+        one = yield from stages
+        closed(job, one.outcome)
+        return one
+
+    with deferred() as signalled:
+        return in_turns(
+            [
+                noted(job, _simulation(job, scene, engine, signalled))
+                for job, scene, engine in zip(jobs, scenes, ready, strict=True)
+            ]
+        )
+
+
+def _simulation(
+    job: CellJob, scene: Scene, ready: tuple[Engine, int], signalled: Callable[[], str]
+) -> Generator[None, None, Simulated]:
+    """Simulate one cell and write its log, in stages.
+
+    ready: its engine, and what its kernel took [ns]. signalled: names a signal that came.
+    """
+    physics_ns = logging_ns = 0
+    (engine, compile_ns), steps = ready, job.config.steps
     in_log = job.in_log or plan_in_log(job.plan)
     absent, metadata = in_log.absent, metadata_of(job, in_log)
     writer = TraceWriter(job.path, job.config, job.as_written, metadata, absent)
+    yield
     # A check finds in a run what it finds in its log.
     unseen = absent | partly_recorded(described(job.config.record))
     bounds = Bounds(job.always, scene.names, job.config, scene.clock, unseen)
@@ -274,41 +314,46 @@ def simulate(job: CellJob, began: Began | None = None) -> Simulated:
     status = "complete"
     call = CallLength(len(scene.names))
     done = stop = 0
-    with deferred() as signalled:
-        while True:
-            events.apply_due(done)
-            start = perf_counter_ns()
-            result = RUNNING
-            if done < steps:
-                stop = dump.next_stop(done, events.next_stop(min(steps, done + call.steps)))
-                result = engine.advance(stop - done)
-            spent = perf_counter_ns() - start
-            made, done = -done, int(engine.counters["step"][0])
-            call.after(made + done, spent * 1e-9)
-            if result == DIVERGED:
-                status = divergence(scene, engine)
-            start = perf_counter_ns()
-            rows = engine.take_rows()
-            if len(rows.step):
-                block, broken = bounds.within(block_of(rows, scene.clock), result == DIVERGED)
-                if broken:
-                    spent = spent * len(block.step) // len(rows.step)
-                    last = int(block.step["step"][-1])
-                    if last < done or result != DIVERGED:
-                        result, status, done = STOPPED, broken, last
-                writer.append(block)
-                accuracy = accuracy.after(block.step, block.contact, scene.names)
-            dump.take(engine, done, stop)
-            physics_ns += spent
-            logging_ns += perf_counter_ns() - start
-            if result in (DIVERGED, STOPPED) or (result == RUNNING and done >= steps):
-                break
-            if name := signalled():
-                status = interrupted(scene.clock, name, done)
-                break
+    while True:
+        yield
+        events.apply_due(done)
         start = perf_counter_ns()
-        written = writer.close(status)
+        result = RUNNING
+        if done < steps:
+            stop = dump.next_stop(done, events.next_stop(min(steps, done + call.steps)))
+            result = engine.advance(stop - done)
+        spent = perf_counter_ns() - start
+        made, done = -done, int(engine.counters["step"][0])
+        call.after(made + done, spent * 1e-9)
+        if result == DIVERGED:
+            status = divergence(scene, engine)
+        yield
+        start = perf_counter_ns()
+        rows = engine.take_rows()
+        if len(rows.step):
+            block, broken = bounds.within(block_of(rows, scene.clock), result == DIVERGED)
+            if broken:
+                spent = spent * len(block.step) // len(rows.step)
+                last = int(block.step["step"][-1])
+                if last < done or result != DIVERGED:
+                    result, status, done = STOPPED, broken, last
+            logging_ns += perf_counter_ns() - start
+            yield
+            start = perf_counter_ns()
+            writer.append(block)
+            accuracy = accuracy.after(block.step, block.contact, scene.names)
+        dump.take(engine, done, stop)
+        physics_ns += spent
         logging_ns += perf_counter_ns() - start
+        if result in (DIVERGED, STOPPED) or (result == RUNNING and done >= steps):
+            break
+        if name := signalled():
+            status = interrupted(scene.clock, name, done)
+            break
+    yield
+    start = perf_counter_ns()
+    written = writer.close(status)
+    logging_ns += perf_counter_ns() - start
     times = compile_ns, physics_ns, logging_ns
     outcome = CellOutcome(job.cell, status, done, *times, accuracy, written.digest)
     return Simulated(outcome, written, bounds.worst)

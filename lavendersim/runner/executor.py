@@ -24,6 +24,11 @@ from .workers import Death, Retried, work
 # process imports numba and loads kernels for 1 to 2 s of processor time before its first step.
 WORTH_PROCESSES = 4.0
 FORKED: Final = 0.05  # of it: a process that is forked takes 0.02 to 0.05 s to begin and to end
+# Cells are short whose steps and bodies make no more than this: 10 ms or so. They are run together,
+# so many at once: less than a second of work in logs that are not closed.
+SHORT: Final = 8000
+TOGETHER: Final = 16
+BATCHES: Final = 8  # of them at least for each process, so that all end at one time
 
 
 def outcomes_of(
@@ -54,25 +59,71 @@ def outcomes_of(
         compiles = done < len(first) and not is_compiled(job.plan.spec)
         begun = missing.get(job.plan.spec) if compiles else None
         begin = perf_counter()
-        ended = run_and_measure(job, _beginning(job, begun, tally, progress))
-        outcome = ended.outcome
-        tally.end(job)
-        done, taken = done + 1, taken + perf_counter() - begin - outcome.compile_ns / 1e9
-        spent = outcome.compile_ns + apart.pop(job.path, 0)
-        yield job, ended._replace(outcome=outcome._replace(compile_ns=spent))
+        batch = (
+            [job]
+            if done < len(first)
+            else next(_batches(ordered[done : done + TOGETHER], TOGETHER))
+        )
+        ended = run_and_measure(batch, _beginning(job, begun, tally, progress))
+        done += len(batch)
+        taken += perf_counter() - begin
+        for job, one in zip(batch, ended, strict=True):
+            tally.end(job)
+            taken -= one.outcome.compile_ns / 1e9
+            spent = one.outcome.compile_ns + apart.pop(job.path, 0)
+            yield job, one._replace(outcome=one.outcome._replace(compile_ns=spent))
     rest = [job.alone() for job in ordered[done:]]
     if not rest:
         return
     tally.begin_in_others()
-    for job, found in work(run_and_measure, rest, workers, partial(_run_again, progress)):
+    batches = [*_batches(rest, len(rest) // (BATCHES * workers))]
+    for job, found in _run_in_others(batches, workers, progress):
         tally.end(job)
         yield job, failed(job, found.how) if isinstance(found, Death) else found
 
 
-def _run_again(progress: Progress, one: Retried[CellJob]) -> None:
-    cell = one.task.cells[0].label if one.task.cells else ""
-    what = f"the process of cell {cell or one.task.cell} {one.death.how}"
-    progress.warning(f"{what}; the cell is run once more")
+def _batches(jobs: Sequence[CellJob], most: int) -> Iterator[list[CellJob]]:
+    """Yield the jobs in their order, short ones that follow each other together."""
+    at = 0
+    while at < len(jobs):
+        end = min(at + max(min(most, TOGETHER), 1), len(jobs))
+        long = next((place for place in range(at, end) if not _is_short(jobs[place])), end)
+        batch = jobs[at : max(long, at + 1)]
+        at += len(batch)
+        yield [*batch]
+
+
+def _is_short(job: CellJob) -> bool:
+    config = job.config
+    if config.engine is not None or config.numerics.accuracy is not None:
+        return False  # what their steps take is not known
+    steps = float(config.duration) / float(config.numerics.timestep)
+    return steps * len(config.scene.bodies) <= SHORT
+
+
+def _run_in_others(
+    batches: Sequence[list[CellJob]], workers: int, progress: Progress
+) -> Iterator[tuple[CellJob, EndedCell | Death]]:
+    """Run batches in other processes. Of one that they die of, each cell is run by itself."""
+    alone: list[list[CellJob]] = []
+    for batch, found in work(run_and_measure, batches, workers, partial(_run_again, progress)):
+        if not isinstance(found, Death):
+            yield from zip(batch, found, strict=True)
+        elif len(batch) == 1:
+            yield batch[0], found
+        else:
+            alone += [[job] for job in batch]
+    if alone:
+        yield from _run_in_others(alone, workers, progress)
+
+
+def _run_again(progress: Progress, one: Retried[list[CellJob]]) -> None:
+    names = [str((job.cells[0].label if job.cells else "") or job.cell) for job in one.task]
+    if len(names) == 1:
+        what, again = f"cell {names[0]}", "the cell is"
+    else:
+        what, again = f"cells {names[0]} to {names[-1]}", f"these {len(names)} cells are"
+    progress.warning(f"the process of {what} {one.death.how}; {again} run once more")
 
 
 class _Missing(NamedTuple):

@@ -21,10 +21,10 @@ class Given(Exception):  # noqa: N818 - it is no error
 
 
 def given(config: Path, root: Path, monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Return the bytes of each task that other processes are given of a sweep."""
+    """Return the bytes of each cell that other processes are given of a sweep."""
 
     def work(function: Any, tasks: Any, *arguments: Any) -> Any:
-        raise Given([len(pickle.dumps(task)) for task in tasks])
+        raise Given([len(pickle.dumps(job)) for batch in tasks for job in batch])
 
     monkeypatch.setattr(executor, "work", work)
     monkeypatch.setattr(executor, "WORTH_PROCESSES", 0.0)

@@ -46,20 +46,21 @@ def exits(task: int) -> int:
     os._exit(task)
 
 
-def dies_at_one_half(job: Any, *began: Any) -> Any:
-    """Run a cell, but die with that of e = 0.5 every time."""
-    if job.cells[0].label == "e=0.5":
-        job.path.write_bytes(b"begun")
-        os.kill(os.getpid(), signal.SIGKILL)
+def dies_at_one_half(jobs: Any, *began: Any) -> Any:
+    """Run cells, but die with that of e = 0.5 every time."""
+    for job in jobs:
+        if job.cells[0].label == "e=0.5":
+            job.path.write_bytes(b"begun")
+            os.kill(os.getpid(), signal.SIGKILL)
     from lavendersim.runner.cell import run_and_measure  # late: a second, in a process of numbers
 
-    return run_and_measure(job, *began)
+    return run_and_measure(jobs, *began)
 
 
-def dies_once_at_one_half(job: Any, *began: Any) -> Any:
-    """Run a cell, but die with that of e = 0.5 the first time."""
+def dies_once_at_one_half(jobs: Any, *began: Any) -> Any:
+    """Run cells, but die with that of e = 0.5 the first time."""
     from lavendersim.runner.cell import run_and_measure
 
-    if job.path.exists():
-        return run_and_measure(job, *began)
-    return dies_at_one_half(job, *began)
+    if any(job.path.exists() for job in jobs):
+        return run_and_measure(jobs, *began)
+    return dies_at_one_half(jobs, *began)

@@ -16,7 +16,7 @@ import lavendersim
 from lavendersim.figures.config_figure import compose
 from lavendersim.runner import Progress, executor, workers
 from lavendersim.runner.workers import AHEAD, Death, Retried, work
-from tests.runner.small_configs import write
+from tests.runner.small_configs import DROPS, write
 
 
 @pytest.fixture(autouse=True, params=["forked", "spawned"])
@@ -133,3 +133,27 @@ def test_a_sweep_goes_on_when_the_process_of_a_cell_is_killed(
     figure = compose(finished.run.experiment, finished.run.cells, finished.run.taken)
     caption = " ".join(" ".join(text.get_text() for text in figure.texts).split())
     assert ("Left out: 1 of 3 cells have no readable log" in caption) == bool(died)
+
+
+def test_of_cells_that_are_run_together_only_the_deadly_one_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Which cell of a batch its process dies of is not known: each is then run by itself."""
+    values = [round(0.1 + 0.1 * k, 1) for k in range(8)]
+    config = write(tmp_path, DROPS.replace("[0.2, 0.5, 0.8]", str(values)))
+    lavendersim.run(config, root=tmp_path / "warm")
+    monkeypatch.setattr(executor, "run_and_measure", dies_at_one_half)
+    monkeypatch.setattr(executor, "WORTH_PROCESSES", 0.0)
+    monkeypatch.setattr(executor, "BATCHES", 1)
+    said: list[str] = []
+    finished = lavendersim.run(
+        config, root=tmp_path / "runs", jobs=2, progress=Progress(warning=said.append)
+    )
+    ended = {cell.label: cell.status for cell in finished.run.cells}
+    died = {"e=0.5": "failed: its process was killed by SIGKILL, both times"}
+    assert ended == {f"e={e}": "complete" for e in values} | died
+    how = "was killed by SIGKILL"
+    assert said == [
+        f"the process of cells e=0.5 to e=0.7 {how}; these 3 cells are run once more",
+        f"the process of cell e=0.5 {how}; the cell is run once more",
+    ]

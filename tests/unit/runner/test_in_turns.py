@@ -1,0 +1,42 @@
+"""Generators in turns: stage by stage, results in order, and an error ends all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+
+import pytest
+
+from lavendersim.runner.in_turns import in_turns
+
+
+def counted(name: str, stages: int, seen: list[str]) -> Generator[None, None, str]:
+    try:
+        for stage in range(stages):
+            seen.append(f"{name}{stage}")
+            yield
+        if name == "x":
+            raise OSError(name)
+        seen.append(f"{name}.")
+    finally:
+        seen.append(f"{name} closed")
+    return name
+
+
+def test_a_stage_of_each_comes_before_the_next_stage_of_any() -> None:
+    seen: list[str] = []
+    found = in_turns([counted("a", 2, seen), counted("b", 0, seen), counted("c", 1, seen)])
+    assert found == ["a", "b", "c"]
+    stages = [one for one in seen if "closed" not in one]
+    assert stages == ["a0", "b.", "c0", "a1", "c.", "a."]
+
+
+def test_none_are_none() -> None:
+    assert in_turns([]) == []
+
+
+def test_what_one_raises_is_raised_once_the_others_are_closed() -> None:
+    seen: list[str] = []
+    with pytest.raises(OSError, match="x"):
+        in_turns([counted("a", 3, seen), counted("x", 1, seen), counted("b", 3, seen)])
+    assert [one for one in seen if "closed" in one] == ["x closed", "a closed", "b closed"]
+    assert "b1" not in seen
