@@ -122,7 +122,7 @@ def main() -> None:
 
     # Configs, plans and results are many objects that live on; looking through them for circles
     # takes a tenth of a run of hundreds of cells.
-    gc.set_threshold(50_000, 20, 20)
+    gc.set_threshold(300_000, 20, 20)
     atexit.register(_leave_memory)
     python_format = warnings.formatwarning
     warnings.formatwarning = lambda message, category, *where, **line: (
