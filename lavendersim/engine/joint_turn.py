@@ -26,6 +26,7 @@ from .compile import inner, kernel
 from .integrate import LASTING
 from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 from .vectors import Vec3, cross, dot, length, minus, plus, position, scaled
 
 
@@ -102,7 +103,7 @@ def make_turned_apart(spec: Spec) -> Any:
 
     Of a row that is solved. 0 of rows at the middle, and of bodies with an impact within the step.
     """
-    turns, keeps = row_terms(spec).levers, spec.has("contact_midpoint")
+    turns, keeps = row_terms(spec).levers, step_terms(spec).centred
 
     def turn_of(v, m, dt):
         w = Vec3(v.wx, v.wy, v.wz)

@@ -7,7 +7,8 @@ from functools import cache
 from typing import Any
 
 from .effects import effects_of
-from .effects.effect import RowTerms, kernel
+from .effects.effect import kernel
+from .effects.terms import RowTerms
 from .spec import Spec
 
 

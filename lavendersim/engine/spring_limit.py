@@ -25,6 +25,7 @@ from .compile import kernel
 from .spec import Spec
 from .spring_group import make_group
 from .spring_turn import PLACED, make_twist
+from .step_terms import step_terms
 from .vectors import Vec3, cross, dot, length, minus, plus, plus_scaled, position, scaled
 
 SWEEPS = 20
@@ -51,7 +52,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
     """
     from .rotation import inverse_inertia_times, orient, turn
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
     twist: Any = make_twist(spec) if turns else None
 
     group_of = make_group(spec, place)

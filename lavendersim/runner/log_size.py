@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.effects import effects_of, row_fields
+from lavendersim.engine.step_terms import step_terms
 from lavendersim.experiment.cell import Cell, alike
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.scene.expected_contacts import expected_contacts
@@ -58,7 +59,7 @@ def expected_log_size(config: CellConfig, plan: Plan, as_written: str) -> float:
     )
     moving = sum(is_movable(body) or body.kinematic for body in bodies)
     contacts = expected_contacts(config)
-    if spec.has("impact_order"):
+    if step_terms(spec).ordered_impacts:
         contacts += IMPACTS * moving
     content = StepContent(
         step_columns=len(row_fields(spec, "step")),

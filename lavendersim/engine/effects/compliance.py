@@ -5,8 +5,9 @@ velocities and its unknown an impulse, F = lambda/dt and d = c F.
 """
 
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Effect, Fields, Hooks, RowTerms, kernel
+from .effect import Effect, Fields, Hooks, kernel
 from .keys import COMPLIANCE, SurfaceKey, in_series
+from .terms import RowTerms, StepTerms
 
 
 def _described(pair: PairFacts) -> str:
@@ -35,6 +36,7 @@ EFFECT = Effect(
     decide=decide,
     per="contact",
     row=RowTerms(compliant=True),
+    step=StepTerms(bounces_vary=True),
     surface_keys=(
         SurfaceKey(
             name="compliance",

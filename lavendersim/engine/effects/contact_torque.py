@@ -2,7 +2,8 @@
 
 from ..records import LEVER
 from .decision import Decision, Facts, named
-from .effect import Effect, Fields, RowTerms
+from .effect import Effect, Fields
+from .terms import RowTerms
 
 
 def decide(facts: Facts) -> Decision:

@@ -23,6 +23,7 @@ from typing import Any
 from ..spec import Spec
 from .decision import Decision, Facts
 from .effect import Choice, Column, Effect, Fields, Hooks, kernel
+from .terms import StepTerms
 
 
 def decide(facts: Facts) -> Decision:
@@ -49,6 +50,7 @@ EFFECT = Effect(
     decide=decide,
     per="body",
     chosen_by=Choice("accuracy", examples=(1e-3, None)),
+    step=StepTerms(substeps=True),
     fields=Fields(
         parameters=[
             ("accuracy", "f8"),  # error that the run may have, relative [-]

@@ -17,6 +17,7 @@ from math import hypot, inf, sqrt
 
 from .decision import BodyFacts, Decision, Facts, meeting
 from .effect import Column, Effect, Fields, Hooks, kernel
+from .terms import RowTerms
 
 # Share of the smaller bounding radius that a pair may close in a step before it is fast [-].
 FAST = 0.5
@@ -139,6 +140,7 @@ EFFECT = Effect(
     decide=decide,
     per="body",
     needs=("speculative",),
+    row=RowTerms(swept=True),
     fields=Fields(
         contact=[
             # displacement of B from A across n until the impact [m]

@@ -8,7 +8,8 @@ bit.
 from ..records import Field
 from ..spec import Spec
 from .decision import Decision, Facts, PairFacts, named
-from .effect import Effect, Fields, RowTerms
+from .effect import Effect, Fields
+from .terms import RowTerms
 
 
 def is_frictionless(pair: PairFacts) -> bool:

@@ -11,6 +11,7 @@ from math import sqrt
 
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Hooks, kernel
+from .terms import StepTerms
 
 # Newton doubles the digits in each pass: four serve any |omega| dt < 1. A body that has not found
 # its midpoint after these turns several radians a step, and the run ends: nothing here is true.
@@ -215,6 +216,7 @@ EFFECT = Effect(
     decide=decide,
     per="body",
     needs=("rotation",),
+    step=StepTerms(uneven=True),
     counts=("gyroscopic_not_converged",),
     step_columns=(
         Column(
@@ -225,5 +227,11 @@ EFFECT = Effect(
             when=acts_midway,
         ),
     ),
-    hooks=Hooks(turn_uneven=make, add_spin=make_jump, step_row=make_step_row),
+    hooks=Hooks(
+        turn_uneven=make,
+        turn_midway=make_turn_midway,
+        turn_by_mean=make_turn_by_mean,
+        add_spin=make_jump,
+        step_row=make_step_row,
+    ),
 )

@@ -8,6 +8,7 @@ from typing import Any
 from .decision import Decision, Facts, named
 from .effect import Balance, Effect, Fields, Unlogged
 from .keys import BodyKey
+from .terms import StepTerms
 
 
 def body_values(body: Any) -> dict[str, bool]:
@@ -37,6 +38,7 @@ EFFECT = Effect(
             prescribes_motion=True,
         ),
     ),
+    step=StepTerms(kinematic=True),
     balance=Balance(unlogged=Unlogged("energy", "{body} moves by itself, and its work")),
     fields=Fields(
         body=[("kinematic", "i8")],  # 1: keeps its velocity

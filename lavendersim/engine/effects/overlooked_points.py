@@ -11,6 +11,7 @@ from __future__ import annotations
 from .decision import Decision, Facts
 from .effect import Effect, Fields
 from .impact_order import decide as has_parts
+from .terms import StepTerms
 
 
 def decide(facts: Facts) -> Decision:
@@ -33,6 +34,7 @@ EFFECT = Effect(
     per="contact",
     needs=("impact_order",),
     overhead_with="impact_order",
+    step=StepTerms(overlooks=True),
     fields=Fields(
         pair=[("whole", "i8")],  # 1 while every point of its manifold takes part
     ),

@@ -19,9 +19,10 @@ from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 
 from ..spec import Spec
 from .decision import Decision, Facts, named
-from .effect import Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
+from .effect import Column, Effect, Fields, Hooks, Kernel, kernel
 from .joint_models import AnyJoint, Connection, Joint
 from .keys import SceneKey, TurnOf
+from .terms import RowTerms
 
 _CENTRE: Vector3 = (0.0, 0.0, 0.0)
 _TWO = ModelField(min_length=2, max_length=2)
@@ -119,7 +120,7 @@ EFFECT = Effect(
             resolve=resolve,
         ),
     ),
-    row=RowTerms(frictionless=True),
+    row=RowTerms(frictionless=True, taut=True),
     fields=Fields(
         contact=[
             ("span", "f8"),  # of the row of a rope: how far its ends are apart [m]; else 0

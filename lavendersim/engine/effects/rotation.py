@@ -5,6 +5,7 @@ from collections.abc import Hashable
 from ..records import ANGULAR_VELOCITY, ORIENTED_BODY
 from .decision import BodyFacts, Decision, Facts, PairFacts, named
 from .effect import Effect, Fields, Hooks, kernel
+from .terms import StepTerms
 
 # Bodies of one kind are alike to all others: a pair stands for all pairs of its two kinds.
 Kind = tuple[str, bool, Hashable]  # shape, whether it can move, surface
@@ -75,6 +76,7 @@ EFFECT = Effect(
     name="rotation",
     decide=decide,
     per="body",
+    step=StepTerms(turns=True),
     fields=Fields(
         body=[*ORIENTED_BODY, ("inv_ix", "f8"), ("inv_iy", "f8"), ("inv_iz", "f8")],
         velocity=ANGULAR_VELOCITY,

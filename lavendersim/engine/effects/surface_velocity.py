@@ -10,8 +10,9 @@ from lavendersim.quantities.quantity import Vector3, Velocity
 
 from ..records import ORIENTED_BODY
 from .decision import Decision, Facts, named
-from .effect import Balance, Effect, Fields, Hooks, RowTerms, Unlogged, kernel
+from .effect import Balance, Effect, Fields, Hooks, Unlogged, kernel
 from .keys import BodyKey, Turn
+from .terms import RowTerms
 
 
 def resolve(value: Vector3, turn: Turn) -> Vector3:

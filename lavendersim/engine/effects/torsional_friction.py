@@ -8,8 +8,9 @@ no other friction: mu may be 0, friction's block is there for its frame.
 """
 
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Column, Effect, Fields, Hooks, RowTerms, kernel
+from .effect import Column, Effect, Fields, Hooks, kernel
 from .keys import LENGTH, SurfaceKey, larger
+from .terms import RowTerms
 
 # spin: angular velocity of B relative to A after the solve, about the normal.
 
