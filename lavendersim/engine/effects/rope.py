@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field as ModelField
 from pydantic import Strict
 
+from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.names import BodyName, NewName
 from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 
@@ -48,7 +49,7 @@ class Rope(Connection):
     )
 
 
-Connections = dict[NewName, Annotated[Rope | AnyJoint, ModelField(discriminator="kind")]]
+Connections = dict[NewName, Annotated[Rope | AnyJoint, ByKind()]]
 
 
 def resolve(connections: Connections, turn: TurnOf) -> Connections:

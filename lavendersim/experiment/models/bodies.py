@@ -12,6 +12,7 @@ from lavendersim.engine.effects import BODY_KEYS, MOTION_KEYS
 from lavendersim.experiment.models.shapes import SOLIDS, TURNED, Orientation, Shape, Solid
 from lavendersim.experiment.models.tree import PRESCRIBE_MOTION
 from lavendersim.experiment.text.place import Place
+from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.found import near
 from lavendersim.quantities.model import ConfigModel, declared
 from lavendersim.quantities.names import SurfaceName
@@ -116,7 +117,7 @@ class Body(_Matter):
 class ArrangedBody(_Matter):
     """A body that stands in several places: all that a body has but its position."""
 
-    shape: Annotated[Solid, Field(discriminator="kind")] = Field(
+    shape: Annotated[Solid, ByKind()] = Field(
         description=f"{', '.join(SOLIDS[:-1])} or {SOLIDS[-1]}"
     )
 

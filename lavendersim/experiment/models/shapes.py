@@ -13,6 +13,7 @@ from pydantic import Field, GetJsonSchemaHandler, Tag
 from pydantic_core import CoreSchema
 
 from lavendersim.cell.shapes import PRIMITIVES, Plane, Primitive
+from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.kinds import kind_of
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import (
@@ -103,7 +104,7 @@ Orientation = Annotated[
 class Part(ConfigModel):
     """One convex piece of a compound."""
 
-    shape: Annotated[Simple, Field(discriminator="kind")] = Field(
+    shape: Annotated[Simple, ByKind()] = Field(
         description=f"{', '.join(KINDS[:-1])} or {KINDS[-1]}"
     )
     position: Position = Field(
@@ -132,4 +133,4 @@ if TYPE_CHECKING:
     Shape = Plane | Primitive | Polyhedral | Compound
 else:
     Solid = Union[(*SIMPLE, Compound)]
-    Shape = Annotated[Union[(Plane, Solid)], Field(discriminator="kind"), OrName()]  # noqa: UP007
+    Shape = Annotated[Union[(Plane, Solid)], ByKind(), OrName()]  # noqa: UP007
