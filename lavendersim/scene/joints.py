@@ -50,7 +50,7 @@ def joined_bodies(scene: CellScene) -> frozenset[tuple[int, int]]:
     )
 
 
-def facts_of_joints(scene: CellScene) -> Iterator[PairFacts]:
+def facts_of_joints(scene: CellScene) -> Iterator[PairFacts[str]]:
     """Yield each joint as a pair, of as many rows as it has."""
     off_centre = {*turned_by_joints(scene)}
     for one in holding(scene).values():

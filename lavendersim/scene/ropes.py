@@ -28,7 +28,7 @@ def surface_of(rope: Rope) -> Surface:
     return Surface(friction=0.0, restitution=rope.restitution)
 
 
-def facts_of_ropes(scene: CellScene) -> Iterator[PairFacts]:
+def facts_of_ropes(scene: CellScene) -> Iterator[PairFacts[str]]:
     """Yield each rope as a pair that may touch."""
     off_centre = {*turned(scene)}
     for one in pulling(scene).values():

@@ -20,7 +20,7 @@ from .keys import FORCE, SurfaceKey, geometric_mean
 from .terms import StepTerms
 
 
-def _reason(pair: PairFacts) -> str:
+def _reason(pair: PairFacts[str]) -> str:
     force = pair.surface.cohesion
     return f"cohesion {force:g} N a contact" if force > 0.0 else ""
 

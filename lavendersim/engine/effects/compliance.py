@@ -10,7 +10,7 @@ from .keys import COMPLIANCE, SurfaceKey, in_series
 from .terms import RowTerms, StepTerms
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     c = pair.surface.compliance
     return f"compliance {c:g} m/N" if c > 0.0 else ""
 

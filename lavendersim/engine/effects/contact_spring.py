@@ -24,7 +24,7 @@ from .terms import RowTerms
 FAST = 4.0
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     c = pair.surface.compliance
     return f"a spring of {c:g} m/N" if c > 0.0 else ""
 

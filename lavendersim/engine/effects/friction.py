@@ -14,7 +14,7 @@ from .keys import COEFFICIENT, SurfaceKey, geometric_mean
 from .terms import RowTerms
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     if pair.surface.friction > 0.0:
         return f"sliding {pair.surface.friction:g}"
     return "resistance to turning acts in friction's frame" if pair.resists_turning else ""

@@ -12,7 +12,7 @@ from .effect import Effect, Fields
 from .terms import RowTerms
 
 
-def is_frictionless(pair: PairFacts) -> bool:
+def is_frictionless(pair: PairFacts[str]) -> bool:
     """Whether contacts of the pair push along their normal alone."""
     return pair.surface.friction == 0.0 and not pair.resists_turning
 

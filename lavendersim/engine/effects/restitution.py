@@ -13,7 +13,7 @@ from .keys import SHARE, SurfaceKey, larger
 from .terms import StepTerms
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     e = pair.surface.restitution
     return f"coefficient {e:g}" if e > 0.0 else ""
 

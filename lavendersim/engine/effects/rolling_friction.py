@@ -18,7 +18,7 @@ from .terms import RowTerms
 # spin: angular velocity of B relative to A after the solve, about the tangents.
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     length = pair.surface.rolling_friction
     return f"rolling friction {length:g} m" if length > 0.0 else ""
 

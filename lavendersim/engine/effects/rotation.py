@@ -52,7 +52,7 @@ def _kind(body: BodyFacts) -> Kind:
     return body.shape, body.movable, body.name if body.config is None else body.config.surface
 
 
-def _touched(facts: Facts, pairs: list[PairFacts]) -> set[Kind]:
+def _touched(facts: Facts, pairs: list[PairFacts[str]]) -> set[Kind]:
     """Return the kinds of bodies that take part in some pairs."""
     names = {name for pair in pairs for name in (pair.a, pair.b)}
     return {_kind(body) for body in facts.bodies if body.name in names}

@@ -15,7 +15,7 @@ from .terms import RowTerms
 # spin: angular velocity of B relative to A after the solve, about the normal.
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     length = pair.surface.torsional_friction
     return f"torsional friction {length:g} m" if length > 0.0 else ""
 
