@@ -17,7 +17,7 @@ class Outcome(NamedTuple):
     reason: str = ""  # where it failed, when the numbers do not say it
     follows: bool = False  # failed because the cell did not complete
     margin: float = float("nan")  # share of the bound that is left; below 0 outside [-]
-    judged: bool = True  # False: the engine does not tell what it takes, `reason` says so
+    judged: bool = True  # False: the engine does not report what it takes, `reason` says so
 
 
 class Verdict(NamedTuple):
@@ -35,7 +35,7 @@ class Verdict(NamedTuple):
     margin: float = float("nan")  # share of the bound that is left; NaN where there is no such
     measure: str = ""  # what was judged
     reason: str = ""  # where it failed, when the numbers do not say it
-    judged: bool = True  # False: the engine does not tell what it takes; then it is not passed
+    judged: bool = True  # False: the engine does not report what it takes; then it is not passed
 
     @property
     def fails(self) -> bool:
@@ -76,7 +76,7 @@ class Verdict(NamedTuple):
 
 
 def unjudged(reason: str) -> Outcome:
-    """Return the outcome of what an engine does not tell enough to judge."""
+    """Return the outcome of what an engine does not report enough to judge."""
     return Outcome(False, float("nan"), "a log that can answer", NO_TOLERANCE, reason, judged=False)
 
 
