@@ -8,8 +8,8 @@ from typing import Any
 
 from .effects import effects_of
 from .effects.effect import kernel
-from .effects.terms import RowTerms
 from .spec import Spec
+from .terms import RowTerms
 
 
 @cache

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import fields
 from functools import cache
 
-from .effects.terms import StepTerms
 from .spec import Spec
+from .terms import StepTerms
 
 
 @cache

@@ -29,7 +29,7 @@ class Verdict(NamedTuple):
     measured: float  # the decisive number: of a row, or of several cells, the worst
     expected: str
     tolerance: str
-    said: str  # all of its message, where that is not of the numbers alone
+    own_message: str  # all of its message, where that is not of the numbers alone
     path: str  # of the log, or of the logs' directory when several are compared
     follows: bool = False  # failed because the cell did not complete
     margin: float = float("nan")  # share of the bound that is left; NaN where there is no such
@@ -45,8 +45,8 @@ class Verdict(NamedTuple):
     @property
     def message(self) -> str:
         """Everything that a person needs; of many verdicts it is longer than what it is made of."""
-        if self.said:
-            return self.said
+        if self.own_message:
+            return self.own_message
         lines = [
             f"{self.node}: {self.word}",
             f"  measured   {self.measured!r}{f' ({self.measure})' if self.measure else ''}",
@@ -69,10 +69,8 @@ class Verdict(NamedTuple):
         del given["measure"], given["reason"]
         if self.judged:
             del given["judged"]
-        return {
-            "message" if name == "said" else name: self.message if name == "said" else value
-            for name, value in given.items()
-        }
+        given["own_message"] = self.message
+        return {name.removeprefix("own_"): value for name, value in given.items()}
 
 
 def unjudged(reason: str) -> Outcome:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from lavendersim.engine.effects import EFFECTS, Column, Effect
 from lavendersim.engine.effects.keys import Key
-from lavendersim.engine.effects.terms import RowTerms, StepTerms
+from lavendersim.engine.terms import RowTerms, StepTerms
 
 INTRODUCTION = """\
 # Effects

@@ -119,7 +119,7 @@ PADDING = '''\
 
 from .decision import Decision
 from .effect import Effect, Fields, Hooks, kernel
-from .terms import RowTerms
+from ..terms import RowTerms
 
 COMPLIANCE = 1e-4  # [m/N]
 

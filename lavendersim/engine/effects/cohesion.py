@@ -14,10 +14,10 @@ TOUCHING). Of two surfaces F is the geometric mean: a surface without cohesion s
 from ..records import TOUCHING
 from ..spec import Spec
 from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Balance, Column, Effect, Fields, Hooks, Kernel, kernel
 from .keys import FORCE, SurfaceKey, geometric_mean
-from .terms import StepTerms
 
 
 def _reason(pair: PairFacts[str]) -> str:

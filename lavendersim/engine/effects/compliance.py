@@ -4,10 +4,10 @@ c is the sum over the two surfaces (in series) [m/N]; divided by dt^2, not dt: t
 velocities and its unknown an impulse, F = lambda/dt and d = c F.
 """
 
+from ..terms import RowTerms, StepTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Effect, Fields, Hooks, kernel
 from .keys import COMPLIANCE, SurfaceKey, in_series
-from .terms import RowTerms, StepTerms
 
 
 def _described(pair: PairFacts[str]) -> str:

@@ -20,9 +20,9 @@ from __future__ import annotations
 
 from ..records import Field
 from ..spec import Spec
+from ..terms import RowTerms, StepTerms
 from .decision import Decision, Facts
 from .effect import Choice, Column, Effect, Fields, Hooks, Kernel, kernel
-from .terms import RowTerms, StepTerms
 
 
 def decide(facts: Facts) -> Decision:

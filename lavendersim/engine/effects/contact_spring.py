@@ -15,10 +15,10 @@ A contact with a spring has no impact, so its restitution has no effect, and it 
 from math import sqrt
 
 from ..step_terms import step_terms
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Balance, Choice, Column, Effect, Fields, Hooks, kernel
 from .keys import COEFFICIENT, SurfaceKey, larger
-from .terms import RowTerms
 
 # dt^2/(m c) above which steps do not resolve a swing, as in `spring_midpoint`.
 FAST = 4.0

@@ -119,10 +119,10 @@ def by_pair(pairs: Sequence[PairFacts[str]], say: Callable[[PairFacts[str]], str
     say: nothing for a pair of which there is nothing to say; such pairs come last.
     """
     texts = [(f"{pair.a} and {pair.b}", say(pair)) for pair in pairs]
-    telling = [f"{names}: {what}" for names, what in texts if what]
-    silent = [f"{names}: none" for names, what in texts if not what]
-    if len(telling) > MOST_PAIRS:
-        telling[MOST_PAIRS - 1 :] = [f"{len(telling) - MOST_PAIRS + 1} more pairs"]
-    if len(silent) > 1:
-        silent = [f"{len(silent)} other pairs: none"]
-    return "; ".join(telling + silent)
+    described = [f"{names}: {what}" for names, what in texts if what]
+    others = [f"{names}: none" for names, what in texts if not what]
+    if len(described) > MOST_PAIRS:
+        described[MOST_PAIRS - 1 :] = [f"{len(described) - MOST_PAIRS + 1} more pairs"]
+    if len(others) > 1:
+        others = [f"{len(others)} other pairs: none"]
+    return "; ".join(described + others)

@@ -22,10 +22,10 @@ from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity
 
 from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, named
 from .effect import Balance, Effect, Fields, Hooks, Unlogged, kernel
 from .keys import BodyKey
-from .terms import StepTerms
 
 
 class Drag(ConfigModel):

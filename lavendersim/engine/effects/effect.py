@@ -16,9 +16,9 @@ from typing import Any, Final, Literal, NamedTuple
 
 from ..records import Field
 from ..spec import Spec
+from ..terms import RowTerms, StepTerms
 from .decision import Decision, Facts
 from .keys import BodyKey, SceneKey, SurfaceKey
-from .terms import RowTerms, StepTerms
 from .time_functions import Terms
 
 Kernel = Any  # a compiled function

@@ -21,9 +21,9 @@ from __future__ import annotations
 from typing import Any
 
 from ..spec import Spec
+from ..terms import StepTerms
 from .decision import Decision, Facts
 from .effect import Choice, Column, Effect, Fields, Hooks, kernel
-from .terms import StepTerms
 
 
 def decide(facts: Facts) -> Decision:

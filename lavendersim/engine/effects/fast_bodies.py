@@ -15,9 +15,9 @@ the start of a step does: up to m |g| dt times the speed in every bounce (`measu
 
 from math import hypot, inf, sqrt
 
+from ..terms import RowTerms
 from .decision import BodyFacts, Decision, Facts, meeting
 from .effect import Column, Effect, Fields, Hooks, kernel
-from .terms import RowTerms
 
 # Share of the smaller bounding radius that a pair may close in a step before it is fast [-].
 FAST = 0.5

@@ -8,10 +8,10 @@ a sweep needs both and nothing else of a body.
 
 from ..spec import Spec
 from ..step_terms import step_terms
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Column, Derived, Effect, Fields, Hooks, Kernel, kernel
 from .keys import COEFFICIENT, SurfaceKey, geometric_mean
-from .terms import RowTerms
 
 
 def _described(pair: PairFacts[str]) -> str:

@@ -7,9 +7,9 @@ bit.
 
 from ..records import Field
 from ..spec import Spec
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, named
 from .effect import Effect, Fields
-from .terms import RowTerms
 
 
 def is_frictionless(pair: PairFacts[str]) -> bool:

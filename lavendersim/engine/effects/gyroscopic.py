@@ -9,9 +9,9 @@ found by Newton's method.
 
 from math import sqrt
 
+from ..terms import StepTerms
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Hooks, kernel
-from .terms import StepTerms
 
 # Newton doubles the digits in each pass: four serve any |omega| dt < 1. A body that has not found
 # its midpoint after these turns several radians a step, and the run ends: nothing here is true.

@@ -25,9 +25,9 @@ from typing import Any
 from ..records import TOUCHING
 from ..spec import Spec
 from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Column, Effect, Fields, Hooks, kernel
-from .terms import StepTerms
 
 # Rows of contacts that the parts of one step may have in all.
 WORK = 512

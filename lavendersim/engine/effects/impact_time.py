@@ -17,9 +17,9 @@ from typing import Any
 
 from ..records import TOUCHING
 from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Fields, Hooks, kernel
-from .terms import StepTerms
 
 # Slower than so many times what forces change in a step, surfaces come to rest, without an impact.
 SLOWEST = 4.0

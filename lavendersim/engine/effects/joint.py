@@ -25,10 +25,10 @@ from typing import Any
 from ..records import Field
 from ..spec import Spec
 from ..step_terms import step_terms
+from ..terms import RowTerms
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Fields, Hooks, Kernel, kernel
 from .joint_models import holding
-from .terms import RowTerms
 
 
 def decide(facts: Facts) -> Decision:

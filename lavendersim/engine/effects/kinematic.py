@@ -5,10 +5,10 @@ Their inverse mass is 0, as that of fixed bodies; the step moves them all the sa
 
 from typing import Any
 
+from ..terms import StepTerms
 from .decision import Decision, Facts, named
 from .effect import Balance, Effect, Fields, Unlogged
 from .keys import BodyKey
-from .terms import StepTerms
 
 
 def body_values(body: Any) -> dict[str, bool]:

@@ -4,9 +4,9 @@
 A body that a contact holds moves with its new velocity, which is the one that respects the contact.
 """
 
+from ..terms import StepTerms
 from .decision import Decision, Facts
 from .effect import Choice, Effect, Fields
-from .terms import StepTerms
 
 
 def decide(facts: Facts) -> Decision:

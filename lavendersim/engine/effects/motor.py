@@ -15,10 +15,10 @@ from __future__ import annotations
 
 from ..spec import Spec
 from ..step_terms import step_terms
+from ..terms import RowTerms
 from .decision import Decision, Facts, named
 from .effect import Balance, Column, Effect, Fields, Hooks, Kernel, kernel
 from .joint_models import holding
-from .terms import RowTerms
 
 _TWIST = "angular impulse on B of a motor that turns, world"
 

@@ -8,10 +8,10 @@ none of the others in, and its points are not looked at. One of a compound is a 
 
 from __future__ import annotations
 
+from ..terms import StepTerms
 from .decision import Decision, Facts
 from .effect import Effect, Fields
 from .impact_order import decide as has_parts
-from .terms import StepTerms
 
 
 def decide(facts: Facts) -> Decision:

@@ -7,10 +7,10 @@ and so does the mistake of `capture_in_sweeps`.
 """
 
 from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Effect, Fields, Hooks, kernel
 from .keys import SHARE, SurfaceKey, larger
-from .terms import StepTerms
 
 
 def _described(pair: PairFacts[str]) -> str:

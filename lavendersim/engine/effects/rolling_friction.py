@@ -10,10 +10,10 @@ psi_t: angular impulse on B [N m s]; a pair's c is the larger of its surfaces'. 
 
 from math import sqrt
 
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Column, Effect, Fields, Hooks, kernel
 from .keys import LENGTH, SurfaceKey, larger
-from .terms import RowTerms
 
 # spin: angular velocity of B relative to A after the solve, about the tangents.
 

@@ -19,11 +19,11 @@ from lavendersim.quantities.names import BodyName, NewName
 from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 
 from ..spec import Spec
+from ..terms import RowTerms
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Fields, Hooks, Kernel, kernel
 from .joint_models import AnyJoint, Connection, Joint
 from .keys import SceneKey, TurnOf
-from .terms import RowTerms
 
 _CENTRE: Vector3 = (0.0, 0.0, 0.0)
 _TWO = ModelField(min_length=2, max_length=2)

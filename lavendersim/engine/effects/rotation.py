@@ -3,9 +3,9 @@
 from collections.abc import Hashable
 
 from ..records import ANGULAR_VELOCITY, ORIENTED_BODY
+from ..terms import StepTerms
 from .decision import BodyFacts, Decision, Facts, PairFacts, named
 from .effect import Effect, Fields, Hooks, kernel
-from .terms import StepTerms
 
 # Bodies of one kind are alike to all others: a pair stands for all pairs of its two kinds.
 Kind = tuple[str, bool, Hashable]  # shape, whether it can move, surface

@@ -8,9 +8,9 @@ stack moving.
 """
 
 from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Hooks, kernel
-from .terms import StepTerms
 
 
 def decide(facts: Facts) -> Decision:

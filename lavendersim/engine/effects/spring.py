@@ -24,10 +24,10 @@ from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 from ..records import ORIENTED_BODY
 from ..spec import Spec
 from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, named
 from .effect import Balance, Column, Effect, Fields, Hooks, Kernel, kernel
 from .keys import SceneKey, TurnOf
-from .terms import StepTerms
 
 _CENTRE: Vector3 = (0.0, 0.0, 0.0)
 Point = Annotated[Vector3, Vector(3, Quantity("m"))]

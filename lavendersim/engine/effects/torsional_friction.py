@@ -7,10 +7,10 @@ psi_n: angular impulse on B [N m s]; a pair's c [m] is the larger of its surface
 no other friction: mu may be 0, friction's block is there for its frame.
 """
 
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Column, Effect, Fields, Hooks, kernel
 from .keys import LENGTH, SurfaceKey, larger
-from .terms import RowTerms
 
 # spin: angular velocity of B relative to A after the solve, about the normal.
 

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 from lavendersim.engine.effects import EFFECTS, Effect
-from lavendersim.engine.effects.terms import StepTerms
 from lavendersim.engine.record_layout import body_dtype, contact_dtype, pair_dtype
 from lavendersim.engine.repeated_bounces import bounces_repeat
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step_terms import step_terms
+from lavendersim.engine.terms import StepTerms
 
 # A field that each term is written in, and the record that has it.
 WRITTEN_IN: dict[str, tuple[Any, str]] = {
