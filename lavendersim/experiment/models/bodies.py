@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, Tag
+from pydantic import Field
 
 from lavendersim.cell.body import Release
 from lavendersim.cell.surface import Surface
@@ -18,12 +18,12 @@ from lavendersim.quantities.model import ConfigModel, declared
 from lavendersim.quantities.names import SurfaceName
 from lavendersim.quantities.quantity import (
     AngularVelocity,
+    Either,
     Position,
     Quantity,
     Vector,
     Vector3,
     Velocity,
-    either,
 )
 
 _CONSTRAIN = ("fixed", *PRESCRIBE_MOTION)
@@ -35,11 +35,8 @@ STATIC_HINT = "a body that never moves has fixed: true"
 
 
 SurfaceOf = Annotated[
-    Annotated[SurfaceName, Tag("name")] | Annotated[Surface, Tag("properties")],
-    either(
-        "the name of a surface or {restitution: ..., friction: ...}",
-        {str: "name", dict: "properties"},
-    ),
+    SurfaceName | Surface,
+    Either("the name of a surface or {restitution: ..., friction: ...}", str, dict),
 ]
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Union
 
-from pydantic import Field, GetJsonSchemaHandler, Tag
+from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from lavendersim.cell.shapes import PRIMITIVES, Plane, Primitive
@@ -18,11 +18,11 @@ from lavendersim.quantities.kinds import kind_of
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import (
     Direction,
+    Either,
     Position,
     Quantity,
     Vector,
     Vector3,
-    either,
 )
 
 
@@ -90,14 +90,8 @@ class AxisAngle(ConfigModel):
 
 
 Orientation = Annotated[
-    Annotated[
-        tuple[float, float, float, float], Vector(4, Quantity(), nonzero=True), Tag("quaternion")
-    ]
-    | Annotated[AxisAngle, Tag("rotation")],
-    either(
-        "a quaternion [w, x, y, z] or {axis: [x, y, z], degrees: angle}",
-        {tuple: "quaternion", list: "quaternion", dict: "rotation"},
-    ),
+    Annotated[tuple[float, float, float, float], Vector(4, Quantity(), nonzero=True)] | AxisAngle,
+    Either("a quaternion [w, x, y, z] or {axis: [x, y, z], degrees: angle}", tuple, dict),
 ]
 
 
