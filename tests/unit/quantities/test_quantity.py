@@ -128,4 +128,4 @@ def test_a_value_of_no_form_is_refused_by_what_all_forms_are(value: Any) -> None
 def test_what_has_a_form_is_refused_as_that_alone() -> None:
     with pytest.raises(ValidationError) as refused:
         FORMS.validate_python({"one": "x"})
-    assert [error["type"] for error in refused.value.errors()] == ["float_type"]
+    assert [error["type"] for error in refused.value.errors()] == ["float_parsing"]
