@@ -49,6 +49,12 @@ def test_a_term_comes_with_its_field(term: str) -> None:
             assert field in dtype(Spec((effect.name,))).names
 
 
+@pytest.mark.parametrize("name", ["drag", "cohesion", "compliance", "spring"])
+def test_where_flights_are_no_parabolas_or_contacts_take_time_bounces_vary(name: str) -> None:
+    """Each is shorter by e than the one before where gravity alone acts between instants."""
+    assert not bounces_repeat(Spec(("impact_time",)).including(name))
+
+
 def test_terms_of_several_effects_stand_side_by_side() -> None:
     both = step_terms(Spec(("drag", "rotation")))
     assert both == StepTerms(bounces_vary=True, turns=True)
