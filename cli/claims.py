@@ -49,7 +49,7 @@ class Judged(NamedTuple):
 class ClaimLine(NamedTuple):
     """What became of one expectation in all its cells, or of all checks of `always`."""
 
-    passed: bool | None  # None: the engine does not tell enough to judge it in any cell
+    passed: bool | None  # None: the engine does not report enough to judge it in any cell
     text: str
 
 
@@ -79,7 +79,7 @@ def summarise(verdicts: Sequence[Any]) -> list[ClaimLine]:
     for name in dict.fromkeys(one.name for one in left):
         own = [one for one in left if one.name == name]
         cells = f" in {len(own)} cells" if len(own) > 1 else ""
-        lines.append(ClaimLine(None, f"{name}: not judged{cells}, the engine does not tell it"))
+        lines.append(ClaimLine(None, f"{name}: not judged{cells}, the engine does not report it"))
     return lines
 
 

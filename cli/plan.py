@@ -88,7 +88,7 @@ def law_of(engine: str) -> dict[str, str]:
         "variant": peer.variants[engine].doc,
         "law": peer.law,
         "precision": "double" if peer.double else "single",
-        "tells": ", ".join(reported) or "nothing of contacts",
+        "reports": ", ".join(reported) or "nothing of contacts",
         "iterations": peer.iterations,
         "capacity": peer.capacity,
         "repeats": peer.repeats,

@@ -26,7 +26,7 @@ WORDS = {
     "diverged": ("DIVERGED", "bold red"),
     "refused": ("REFUSED", "bold red"),
     "died": ("DIED", "bold red"),
-    "not judged": ("UNTOLD", "yellow"),
+    "not judged": ("UNJUDGED", "yellow"),
 }
 UNWRAPPED = 200  # columns of a pipe
 

@@ -31,17 +31,23 @@ class UsageError(LavenderError):
 
 
 class NotReportedError(UsageError):
-    """A log has not what is asked of it, because the engine that made it does not tell it."""
+    """A log has not what is asked of it, because the engine that made it does not report it."""
 
 
-# How a reason ends where an engine does not tell what is asked of its log: a measure's reason is
+# How a reason ends where an engine does not report what is asked of its log: a measure's reason is
 # kept as a text, and raised again from it.
-UNREPORTED: Final = "does not tell it"
+NOT_REPORTED: Final = "does not report it"
+_IN_OLDER_LOGS: Final = "does not tell it"
+
+
+def is_not_reported(sentence: str) -> bool:
+    """Whether a reason is that the engine does not report what is asked of its log."""
+    return sentence.endswith((NOT_REPORTED, _IN_OLDER_LOGS))
 
 
 def unanswerable(sentence: str) -> UsageError:
     """Return the error of a log that has not what is asked of it, by the reason it gives."""
-    return NotReportedError(sentence) if sentence.endswith(UNREPORTED) else UsageError(sentence)
+    return NotReportedError(sentence) if is_not_reported(sentence) else UsageError(sentence)
 
 
 class ConfigError(LavenderError):

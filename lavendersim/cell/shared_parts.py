@@ -20,16 +20,16 @@ KEPT: Final = 1024  # parts that are remembered; one that is forgotten is only k
 class _Equal:
     """A part, equal to others by what it says: 0.0 is not -0.0, and 1 is not 1.0."""
 
-    __slots__ = ("part", "said")
+    __slots__ = ("content", "part")
 
     def __init__(self, part: ConfigModel | ResolvedModel) -> None:
-        self.part, self.said = part, (type(part), str(vars(part)))
+        self.part, self.content = part, (type(part), str(vars(part)))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Equal) and self.said == other.said
+        return isinstance(other, _Equal) and self.content == other.content
 
     def __hash__(self) -> int:
-        return hash(self.said)
+        return hash(self.content)
 
 
 @lru_cache(maxsize=KEPT)

@@ -11,11 +11,12 @@ from typing import Any
 from .compile import kernel
 from .rotation import inverse_inertia_times
 from .spec import Spec
+from .step_terms import step_terms
 
 
 def make_apply_force(spec: Spec) -> Any:
     """Return `kernel(body, velocity, force, torque, dt)`; without rotation the torque is idle."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def apply_force(body, velocity, force, torque, dt):
         scale = body.inv_m * dt

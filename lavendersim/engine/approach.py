@@ -12,6 +12,7 @@ from .effects import made_once
 from .records import PLANE, TOUCHING
 from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 from .vectors import Vec3, cross, dot, length, minus, plus, position, scaled
 
 NEVER = 1e300  # [s]
@@ -114,7 +115,7 @@ def make_rate(spec: Spec) -> Any:
 
     ma, mb: rows of `motion`; arm_a, arm_b: the points, from the centres of their bodies.
     """
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def rate(n, ma, mb, arm_a, arm_b):
         v = dot(n, relative_velocity(ma, mb))
@@ -158,7 +159,7 @@ def make_forced(spec: Spec) -> Any:
 
 def make_turning(spec: Spec) -> Any:
     """Return `kernel(contact, bodies, motion) -> speed`, at most, by the spins of both [m/s]."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def turning_of(contact, body, m):
         # A plane has no size: its spin moves what is at the contact.
@@ -219,8 +220,8 @@ def make_bend(spec: Spec) -> Any:
 
     A normal turns with its bodies, and as they go round each other.
     """
-    relative_speed, turns = make_relative_speed(spec), spec.has("rotation")
-    ropes = spec.has("rope")
+    relative_speed, turns = make_relative_speed(spec), step_terms(spec).turns
+    ropes = row_terms(spec).taut
 
     def bend(contact, bodies, motion):
         ma, mb = motion[contact.a], motion[contact.b]
@@ -243,7 +244,7 @@ def make_bend_of_rope(spec: Spec) -> Any:
     phi'' = -|d|'',  |d|'' = (|d'|^2 - (d'.u)^2)/|d| + u . (w_B x (w_B x r_B) - w_A x (w_A x r_A)),
     u = d/|d|, beside what forces do: ends that pass each other go apart as they pass.
     """
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def bend_of_rope(end_a, end_b, bodies, motion):
         ma, mb = motion[end_a.owner], motion[end_b.owner]

@@ -144,7 +144,7 @@ def make_apply_vector(spec: Spec):
 def make_complete_block(spec: Spec):
     """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3."""
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
-    swept, shifted = spec.has("fast_bodies"), row_terms(spec).shifted
+    swept, shifted = row_terms(spec).swept, row_terms(spec).shifted
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi

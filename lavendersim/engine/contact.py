@@ -26,6 +26,7 @@ from .spin_block import (
     make_resists_turning,
     resists_turning,
 )
+from .step_terms import step_terms
 from .vectors import Vec3, cross, length, position
 
 
@@ -215,8 +216,8 @@ def make_apply_start(spec: Spec):
 
 def make_complete_row(spec: Spec):
     """Return `kernel(contact, body_a, body_b) -> k_n` of a row without friction: its levers."""
-    torque, swept = row_terms(spec).levers, spec.has("fast_bodies")
-    ropes, bilateral = spec.has("rope"), row_terms(spec).bilateral
+    torque, swept = row_terms(spec).levers, row_terms(spec).swept
+    ropes, bilateral = row_terms(spec).taut, row_terms(spec).bilateral
     bounded, stopped = row_terms(spec).bounded, row_terms(spec).stopped
 
     def complete_row(contact, body_a, body_b):
@@ -254,7 +255,7 @@ def make_stirred(spec: Spec):
     What accelerates both bodies in a timestep, in any direction [m/s]: forces, and where impacts
     are in order what the bodies did in the last part of a step.
     """
-    kept, forced = spec.has("impact_order"), keeps_motion(spec)
+    kept, forced = step_terms(spec).ordered_impacts, keeps_motion(spec)
 
     def stirred(body_a, body_b, motion, contact, params):
         speed = 0.0
@@ -279,8 +280,9 @@ def make_append_contact(spec: Spec, capture):
     terms = row_terms(spec)
     friction, frictionless = terms.frictional, terms.frictionless
     compliant = terms.compliant
-    at_surface = spec.has("impact_time")
-    forced = spec.has("impact_time") or spec.has("midpoint") or spec.has("contact_midpoint")
+    step = step_terms(spec)
+    at_surface = step.timed_impacts
+    forced = at_surface or step.mean_flight or step.centred
     normal_velocity = make_normal_velocity(spec)
     complete_block: Any = make_complete_block(spec) if friction else None
     spins = resists_turning(spec)
@@ -292,7 +294,7 @@ def make_append_contact(spec: Spec, capture):
     prepare: Any = chain(preparing, spec) if prepares else None
     slows = at_surface and has_hook(spec, "slowed_n")
     slowed_n: Any = made_once(spec, "slowed_n")[1] if slows else None
-    ropes, bilateral, bounded = spec.has("rope"), terms.bilateral, terms.bounded
+    ropes, bilateral, bounded = row_terms(spec).taut, terms.bilateral, terms.bounded
     stirred: Any = make_stirred(spec) if ropes else None
 
     def append_contact(contact, bodies, velocities, motion, pair, params):

@@ -94,7 +94,7 @@ class Engine:
             raise ValueError(", ".join(sorted(lacking)))
         self.spec, self.parameters = spec, parameters
         self._records_sweeps = has_hook(spec, "sweep_row")
-        self.block_steps = max(block_steps, 1) if spec.has("step_log") else 0
+        self.block_steps = max(block_steps, 1) if has_hook(spec, "log_step") else 0
         self.counters = memory.allocate_counters()
         self._done = self.counters["step"]
         self._initial_pose = poses
@@ -249,12 +249,12 @@ class Engine:
 
     def wake(self, body: int) -> None:
         """Wake the bodies that sleep beside one that is about to be changed."""
-        if self.spec.has("sleeping"):
+        if has_hook(self.spec, "update_sleeping"):
             sleeping.wake_around(self.bodies, body)
 
     def wake_all(self) -> None:
         """Wake every body that sleeps: something has changed that all feel."""
-        if self.spec.has("sleeping"):
+        if has_hook(self.spec, "update_sleeping"):
             sleeping.wake_rows(self.bodies, self.bodies["asleep"] == 1)
 
     def list_pairs_anew(self) -> None:
@@ -268,7 +268,7 @@ class Engine:
         rows = removal.rows_of(self.bodies, body)
         removal.cut_links(self.state.links, self.bodies, body)
         removal.hold_still(self.bodies, self.velocities, rows)
-        if self.spec.has("broad_phase"):
+        if has_hook(self.spec, "find_pairs"):
             templates = removal.make_untouchable(self.bodies, self.workspace.templates, rows)
             self.workspace = self.workspace._replace(templates=templates)
             self.list_pairs_anew()

@@ -24,6 +24,7 @@ from .contact import make_apply_block, make_normal_velocity
 from .records import Field
 from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 from .vectors import Vec3, length, minus, position
 
 # A step of order 2 made in halves is off by a third of what it differs from the whole by.
@@ -59,7 +60,7 @@ def angle(one, other):
 
 def make_point_speed(spec: Spec) -> Any:
     """Return `kernel(body, v) -> |v| + R |w|`: no point of the body is faster [m/s]."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def point_speed(body, v):
         speed = length(Vec3(v.vx, v.vy, v.vz))
@@ -129,7 +130,7 @@ def make_add_paths(spec: Spec) -> Any:
 
     before: rows of the bodies at its start.
     """
-    turns, point_speed = spec.has("rotation"), make_point_speed(spec)
+    turns, point_speed = step_terms(spec).turns, make_point_speed(spec)
 
     def add_paths(bodies, velocities, before, paths):
         for i in range(bodies.shape[0]):
@@ -151,7 +152,7 @@ def make_estimate(spec: Spec) -> Any:
     differences. left: of the run, behind the substep [s]; residual: of its last solve [m/s].
     Returns e, the error of the same body that solves may leave, and that body; -1: none has one.
     """
-    turns, touches = spec.has("rotation"), spec.touches
+    turns, touches = step_terms(spec).turns, spec.touches
     point_speed = make_point_speed(spec)
     respect_contacts: Any = make_respect_contacts(spec) if touches else None
 

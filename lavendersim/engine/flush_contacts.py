@@ -21,8 +21,10 @@ from .collide.rope import ROPE
 from .collide.shapes import make_radius, make_support
 from .compile import kernel
 from .contact_lists import make_list_contacts
+from .effects import has_hook
 from .impact_rows import make_keep_present
 from .records import PLANE, SPHERE, TOUCHING
+from .row_terms import row_terms
 from .spec import Spec
 from .vectors import Vec3, dot, minus, plus, position
 
@@ -43,7 +45,8 @@ def make_drop_flush(spec: Spec) -> Any:
     support, radius = make_support(spec), make_radius(spec)
     rate, slowest = make_rate(spec), make_slowest(spec)
     keep_present, list_contacts = make_keep_present(spec), make_list_contacts(spec)
-    sleeps, connects, joins = spec.has("sleeping"), spec.connects, spec.has("joint")
+    sleeps, connects = has_hook(spec, "update_sleeping"), spec.connects
+    joins = row_terms(spec).bilateral
 
     def passes(state, contact, other, workspace, params, least):
         bodies, motion = state.bodies, state.motion

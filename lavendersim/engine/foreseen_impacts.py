@@ -24,7 +24,9 @@ from .approach import (
 from .compile import kernel
 from .effects import made_once
 from .records import TOUCHING
+from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 
 # Shortest flight after an impact, in timesteps: shorter ones are contact.
 FLIGHT = 1.0 / 64.0
@@ -70,11 +72,11 @@ def make_foresee(spec: Spec) -> Any:
     forced, slowest = make_forced(spec), make_slowest(spec)
     change_ahead = make_change_ahead(spec)
     relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
-    turns, bend = spec.has("rotation"), make_bend(spec)
-    restitution, compliance = spec.has("restitution"), spec.has("compliance")
-    springs = spec.has("contact_spring")
+    turns, bend = step_terms(spec).turns, make_bend(spec)
+    restitution, compliance = step_terms(spec).rebounds, row_terms(spec).compliant
+    springs = row_terms(spec).elastic
     draws, is_drawn = made_once(spec, "is_drawn")
-    overlooks, ropes = spec.has("overlooked_points"), spec.has("rope")
+    overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
     bend_of_rope: Any = make_bend_of_rope(spec) if ropes else None
     falls, restitution_at = made_once(spec, "restitution_at")
 
@@ -156,7 +158,7 @@ def make_follow(spec: Spec) -> Any:
     Bodies that part where they touched, and turn, may meet with other features of theirs: of such
     a pair one row is due as soon as any of their points can have closed the gap.
     """
-    if not spec.has("rotation"):
+    if not step_terms(spec).turns:
         return None
     forced, nearest_rate = make_forced(spec), make_nearest_rate(spec)
 

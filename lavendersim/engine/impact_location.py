@@ -26,10 +26,11 @@ from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import put_normal
 from .compile import kernel, separate
-from .effects import made_once
+from .effects import has_hook, made_once
 from .integrate import make_turn
 from .records import INSTANT, TOUCHING
 from .spec import Spec
+from .step_terms import step_terms
 
 # Looks at the pair: Newton's steps find a meeting in some five; those of bodies that are followed
 # are 1/STRIDE at most, and halving a step of 1 s down to what INSTANT tells apart takes 40.
@@ -54,9 +55,9 @@ def make_locate(spec: Spec) -> Any:
     """
     manifold, approach = make_manifold(spec, spec.shape_pairs), make_approach(spec)
     change_ahead, nearest_rate = make_change_ahead(spec), make_nearest_rate(spec)
-    turns, compound = spec.has("rotation"), spec.has("compound")
+    turns, compound = step_terms(spec).turns, has_hook(spec, "place_parts")
     turn: Any = make_turn(spec)
-    overlooks = spec.has("overlooked_points")
+    overlooks = step_terms(spec).overlooks
     _, place_part = made_once(spec, "place_part")
 
     def displace(body, velocity, m, t, left):

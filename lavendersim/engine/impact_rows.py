@@ -11,6 +11,7 @@ from .overlooked_points import make_note_waiting
 from .records import TOUCHING
 from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 
 
 def make_mark_impact(spec: Spec) -> Any:
@@ -27,7 +28,7 @@ def _make_together(spec: Spec) -> Any:
 
     An impact is handed on from body to body, as far as it goes.
     """
-    slowest, springs = make_slowest(spec), spec.has("contact_spring")
+    slowest, springs = make_slowest(spec), row_terms(spec).elastic
     bilateral = row_terms(spec).bilateral
 
     def hands_on(contact, bodies, motion):
@@ -91,7 +92,7 @@ def make_keep_motion(spec: Spec) -> Any:
 
     Those that wait are noted, since a push of the others may make them meet in it.
     """
-    keep_present, overlooks = make_keep_present(spec), spec.has("overlooked_points")
+    keep_present, overlooks = make_keep_present(spec), step_terms(spec).overlooks
     note_waiting: Any = make_note_waiting(spec) if overlooks else None
 
     def keep_motion(contacts, count, overlooked):

@@ -12,14 +12,14 @@ from math import sqrt
 from typing import Any
 
 from .compile import kernel
-from .effects import made_once
-from .effects.gyroscopic import make_turn_by_mean
+from .effects import has_hook, made_once
 from .joined_impacts import make_share_impacts
 from .records import NOT_FINITE, TURNS_TOO_FAST
 from .rotation import inertia_times, inverse_inertia_times, is_round, orient, turn
 from .row_terms import make_acts, row_terms
 from .spec import Spec
 from .spring_turn import BOTH, PLACED, make_twist
+from .step_terms import step_terms
 
 # MOTION.carried: a contact carries the body from its impact on, or through the whole step.
 AFTERWARDS = 1
@@ -38,13 +38,13 @@ LIKE = 0.1
 
 def keeps_motion(spec: Spec) -> bool:
     """Whether the step needs to know what bodies did before the solve."""
-    in_time = spec.has("midpoint") or spec.has("impact_time") or spec.has("contact_midpoint")
-    return in_time or spec.has("speculative")
+    terms = step_terms(spec)
+    return terms.mean_flight or terms.timed_impacts or terms.centred or terms.ahead
 
 
 def make_note_change(spec: Spec) -> Any:
     """Return `kernel(body, v, m, dt)`: by how much forces changed v, and how far the body gets."""
-    torque = spec.has("rotation")
+    torque = step_terms(spec).turns
 
     def note_change(body, v, m, dt):
         m.dvx, m.dvy, m.dvz = v.vx - m.vx, v.vy - m.vy, v.vz - m.vz
@@ -58,8 +58,8 @@ def make_note_change(spec: Spec) -> Any:
 
 def make_begin(spec: Spec, accelerate: Any) -> Any:
     """Return `kernel(bodies, velocities, motion, params)`: forces act; their effect is noted."""
-    torque = spec.has("rotation")
-    kinematic, centred = spec.has("kinematic"), spec.has("contact_midpoint")
+    torque = step_terms(spec).turns
+    kinematic, centred = step_terms(spec).kinematic, step_terms(spec).centred
     note_change = make_note_change(spec)
     prescribed, prescribe = made_once(spec, "prescribe")
 
@@ -101,7 +101,7 @@ def make_finish(spec: Spec) -> Any:
 
 def make_undo(spec: Spec) -> Any:
     """Return `kernel(velocities, motion)`: velocities as before `begin`, for a step begun again."""
-    torque = spec.has("rotation")
+    torque = step_terms(spec).turns
 
     def undo(velocities, motion):
         for i in range(velocities.shape[0]):
@@ -126,7 +126,7 @@ def make_stand(spec: Spec) -> Any:
 
 def make_classify(spec: Spec) -> Any:
     """Return `kernel(contacts, count, motion, params)`: free, carried or in an impact."""
-    at_surface, centred = spec.has("impact_time"), spec.has("contact_midpoint")
+    at_surface, centred = step_terms(spec).timed_impacts, step_terms(spec).centred
     acts = make_acts(spec)
     joined = at_surface and row_terms(spec).bilateral
     share_impacts: Any = make_share_impacts(spec) if joined else None
@@ -208,7 +208,7 @@ def make_turn_in_halves(spec: Spec) -> Any:
     to one the second would drive it about the axis that resists least.
     """
     integrate_rotation: Any = make_turn(spec)
-    sprung = spec.has("spring") and spec.has("midpoint")
+    sprung = step_terms(spec).sprung and step_terms(spec).mean_flight
 
     def turn_in_halves(body, v, m, dt):
         stops = True
@@ -242,16 +242,16 @@ def make_turn_in_halves(spec: Spec) -> Any:
 
 def make_displace(spec: Spec) -> Any:
     """Return `kernel(body, v, m, dt) -> solved`: the body's displacement in the step."""
-    turns = spec.has("rotation")
-    midpoint = spec.has("midpoint")
-    springs = midpoint and spec.has("spring")
+    turns = step_terms(spec).turns
+    midpoint = step_terms(spec).mean_flight
+    springs = midpoint and step_terms(spec).sprung
     twist: Any = make_twist(spec) if springs and turns else None
-    at_surface = spec.has("impact_time")
-    uneven, centred = spec.has("gyroscopic"), spec.has("contact_midpoint")
+    at_surface = step_terms(spec).timed_impacts
+    uneven, centred = step_terms(spec).uneven, step_terms(spec).centred
     twists = turns and midpoint  # torques of forces and springs; none: the same bits
     integrate_rotation: Any = make_turn(spec)
     turn_in_halves: Any = make_turn_in_halves(spec) if turns else None
-    turn_by_mean: Any = make_turn_by_mean(spec) if centred and uneven else None
+    turn_by_mean: Any = made_once(spec, "turn_by_mean")[1] if centred and uneven else None
     _, jump = made_once(spec, "add_spin")
 
     def displace(body, v, m, dt):
@@ -355,9 +355,9 @@ def make_displace(spec: Spec) -> Any:
 
 def make_integrate(spec: Spec) -> Any:
     """Return `kernel(bodies, velocities, motion, pseudo, moved, dt) -> (diverged or -1, cause)`."""
-    turns, projects = spec.has("rotation"), spec.has("projection")
+    turns, projects = step_terms(spec).turns, has_hook(spec, "project")
     torque = row_terms(spec).levers
-    kinematic = spec.has("kinematic")
+    kinematic = step_terms(spec).kinematic
     keeps = keeps_motion(spec)
     integrate_rotation: Any = make_turn(spec)
     displace: Any = make_displace(spec) if keeps else None

@@ -26,6 +26,7 @@ from .compile import inner, kernel
 from .integrate import LASTING
 from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 from .vectors import Vec3, cross, dot, length, minus, plus, position, scaled
 
 
@@ -91,10 +92,13 @@ def turned_by(f, r):
 
 
 @inner
-def _left_by_direction(n, f, e, way):
-    """Return (n_1 - n) . (e + way) - (f x n) . e: n turns with A, by f; way: of B's end from A."""
+def _left_by_direction(n, f, e, moved):
+    """Return (n_1 - n) . (e + moved) - (f x n) . e; n turns with A, by f.
+
+    moved: displacement of B's end from A's.
+    """
     turned = turned_by(f, n)
-    return dot(minus(turned, cross(f, n)), e) + dot(turned, way)
+    return dot(minus(turned, cross(f, n)), e) + dot(turned, moved)
 
 
 def make_turned_apart(spec: Spec) -> Any:
@@ -102,7 +106,7 @@ def make_turned_apart(spec: Spec) -> Any:
 
     Of a row that is solved. 0 of rows at the middle, and of bodies with an impact within the step.
     """
-    turns, keeps = row_terms(spec).levers, spec.has("contact_midpoint")
+    turns, keeps = row_terms(spec).levers, step_terms(spec).centred
 
     def turn_of(v, m, dt):
         w = Vec3(v.wx, v.wy, v.wz)
@@ -113,14 +117,14 @@ def make_turned_apart(spec: Spec) -> Any:
 
     turn_of = kernel(turn_of, spec)
 
-    def way_of(v, m, dt):
+    def displacement_of(v, m, dt):
         u = Vec3(v.vx, v.vy, v.vz)
         if keeps:
             if m.carried == LASTING:
                 u = scaled(0.5, plus(u, Vec3(m.vx, m.vy, m.vz)))
         return scaled(dt, u)
 
-    way_of = kernel(way_of, spec)
+    displacement_of = kernel(displacement_of, spec)
 
     def turned_apart(contact, velocities, motion, dt):
         if not turns:
@@ -139,8 +143,8 @@ def make_turned_apart(spec: Spec) -> Any:
         turned = turned_by(f, arm_b)
         of_b = minus(turned, cross(f, arm_b))
         if contact.sliding == 1:
-            way = plus(minus(way_of(vb, mb, dt), way_of(va, ma, dt)), turned)
-            return _left_by_direction(n, turn_of(va, ma, dt), arm_a, way) + dot(n, of_b)
+            moved = plus(minus(displacement_of(vb, mb, dt), displacement_of(va, ma, dt)), turned)
+            return _left_by_direction(n, turn_of(va, ma, dt), arm_a, moved) + dot(n, of_b)
         f = turn_of(va, ma, dt)
         of_a = minus(turned_by(f, arm_a), cross(f, arm_a))
         return dot(n, minus(of_b, of_a))

@@ -37,6 +37,7 @@ from .records import COUNTERS, MOTION, OVERLOOKED, dtype
 from .solvers.catalogue import SOLVERS
 from .spec import Spec
 from .step_doubling import allocate_control, with_capacity
+from .step_terms import step_terms
 
 _MOTION, _OVERLOOKED = dtype(MOTION), dtype(OVERLOOKED)
 
@@ -155,13 +156,13 @@ def allocate_state(
 ) -> State:
     """Return the state of a scene with room for so many contacts."""
     moving = len(bodies) if keeps_motion(spec) else 0
-    projected = len(bodies) if spec.has("projection") else 0
+    projected = len(bodies) if has_hook(spec, "project") else 0
     return State(
         bodies=bodies,
         velocities=velocities,
         pairs=pairs,
         contacts=np.zeros(capacity, contact_dtype(spec)),
-        cache=np.zeros(capacity if spec.has("warm_start") else 0, cache_dtype(spec)),
+        cache=np.zeros(capacity if has_hook(spec, "match") else 0, cache_dtype(spec)),
         motion=np.zeros(moving, _MOTION),
         pseudo=np.zeros(projected, velocities.dtype),
         links=allocate_links(spec, 0) if links is None else links,
@@ -173,7 +174,7 @@ def allocate_state(
 
 def with_contacts(spec: Spec, state: State, capacity: int) -> State:
     """Return a state with room for so many contacts; cached impulses stay."""
-    cache = np.zeros(capacity if spec.has("warm_start") else 0, state.cache.dtype)
+    cache = np.zeros(capacity if has_hook(spec, "match") else 0, state.cache.dtype)
     if len(cache):
         cache[: len(state.cache)] = state.cache
     return state._replace(
@@ -187,9 +188,10 @@ def allocate_workspace(
     spec: Spec, state: State, hulls: HullGeometry | None, templates: np.ndarray | None
 ) -> Workspace:
     """Return the workspace of a state; templates: of the broad phase."""
-    bodies, near = len(state.bodies), spec.has("broad_phase")
-    centred = bodies if spec.has("contact_midpoint") else 0
-    tried = 1 if spec.has("impact_order") else 0
+    bodies, near = len(state.bodies), has_hook(spec, "find_pairs")
+    centred = bodies if step_terms(spec).centred else 0
+    tried = 1 if step_terms(spec).ordered_impacts else 0
+    free = bodies if has_hook(spec, "keep_free") else 0
     links = len(state.links) if centred and has_hook(spec, "act_beside") else 0
     coupled = bodies if links else 0
     empty = Workspace(
@@ -218,9 +220,9 @@ def allocate_workspace(
         ordering=allocate_ordering(bodies, 0),
         contact_lists=allocate_contact_lists(0, 0),
         overlooked=Overlooked(np.zeros(0, _OVERLOOKED), np.zeros(1, np.int64)),
-        islands=np.zeros(bodies if spec.has("sleeping") else 0, np.int64),
+        islands=np.zeros(bodies if has_hook(spec, "update_sleeping") else 0, np.int64),
         solver=(),
-        free_velocities=np.zeros(bodies if spec.has("problem_log") else 0, state.velocities.dtype),
+        free_velocities=np.zeros(free, state.velocities.dtype),
         templates=templates if near else (),
         broad_phase=allocate_broad_phase(bodies, len(state.pairs)) if near else (),
     )
@@ -230,8 +232,8 @@ def allocate_workspace(
 def for_contacts(spec: Spec, workspace: Workspace, state: State) -> Workspace:
     """Return the workspace with room for the contacts of a state."""
     bodies, capacity = len(state.bodies), len(state.contacts)
-    listed = (bodies, capacity) if spec.has("impact_order") else (0, 0)
-    rows = 2 * capacity if spec.has("overlooked_points") else 0
+    listed = (bodies, capacity) if step_terms(spec).ordered_impacts else (0, 0)
+    rows = 2 * capacity if step_terms(spec).overlooks else 0
     overlooked = np.zeros(rows, _OVERLOOKED)
     return workspace._replace(
         ordering=allocate_ordering(bodies, capacity),
@@ -249,7 +251,7 @@ def allocate_log(spec: Spec, state: State, poses: np.ndarray, steps: int, sweeps
     capacity, velocities = len(state.contacts), state.velocities
     # A quarter of the worst case: full columns end a block early, they lose nothing.
     contact_rows = max(capacity, steps * capacity // 4) if steps else 0
-    if spec.has("velocity_log"):
+    if has_hook(spec, "log_velocity"):
         poses = np.hstack([poses, np.zeros((len(poses), 6))])
     pose = np.repeat(poses[None], steps, axis=0)
     return Log(

@@ -15,12 +15,12 @@ from .collide.records import UNBOUNDED, put_normal
 from .collide.rope import ROPE
 from .compile import inner, kernel
 from .effects import made_once
-from .effects.gyroscopic import make_turn_midway
 from .joint_turn import put_mean_ends
 from .records import BOX, HULL, PLANE, TOUCHING
 from .rotation import half_turn, is_round
 from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 
 # Contacts are looked for at the middle up to this share of a body's size apart.
 APART = 0.1
@@ -35,9 +35,8 @@ def make_stand_midway(spec: Spec) -> Any:
     velocities before any impulse; of uneven bodies their spin at the middle, which turns with the
     body. Those of the last middle, replaced. missed: how many bodies turned to no middle.
     """
-    turns, uneven = spec.has("rotation"), spec.has("gyroscopic")
-    kinematic = spec.has("kinematic")
-    turn_midway: Any = make_turn_midway(spec) if uneven else None
+    turns, (uneven, turn_midway) = step_terms(spec).turns, made_once(spec, "turn_midway")
+    kinematic = step_terms(spec).kinematic
 
     def stand_midway(bodies, velocities, motion, lead, poses, dt):
         missed = 0
@@ -106,9 +105,9 @@ def make_look(spec: Spec) -> Any:
     """
     manifold = make_manifold(spec, spec.shape_pairs)
     compound, place_parts = made_once(spec, "place_parts")
-    swept, stay = spec.has("fast_bodies"), make_stay(spec)
-    ordered, nearest = spec.has("impact_order"), make_nearest(spec)
-    overlooks, ropes = spec.has("overlooked_points"), spec.has("rope")
+    swept, stay = row_terms(spec).swept, make_stay(spec)
+    ordered, nearest = step_terms(spec).ordered_impacts, make_nearest(spec)
+    overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
     arms = row_terms(spec).bilateral and row_terms(spec).levers
 
     def look(state, count, poses, workspace):
@@ -172,7 +171,7 @@ def make_look(spec: Spec) -> Any:
 
 def make_stay(spec: Spec) -> Any:
     """Return `kernel(contact, bodies, poses)`: the contact of the start, where the bodies stand."""
-    swept = spec.has("fast_bodies")
+    swept = row_terms(spec).swept
     arms = row_terms(spec).bilateral and row_terms(spec).levers
 
     def stay(contact, bodies, poses):
@@ -197,7 +196,7 @@ def make_stay(spec: Spec) -> Any:
 
 def make_keep_start(spec: Spec) -> Any:
     """Return `kernel(contacts, count)`: keep geometry and impulses of the solve at the start."""
-    swept, friction = spec.has("fast_bodies"), row_terms(spec).frictional
+    swept, friction = row_terms(spec).swept, row_terms(spec).frictional
     terms = row_terms(spec)
     torsional, rolling = terms.torsional, terms.rolling
     arms = terms.bilateral and terms.levers

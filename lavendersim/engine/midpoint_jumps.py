@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from .compile import kernel
-from .row_terms import make_acts
+from .row_terms import make_acts, row_terms
 from .spec import Spec
 
 
@@ -21,7 +21,7 @@ def make_carry_along(spec: Spec) -> Any:
 
     Of contacts that are solved, `lasts` and `jumps` as they were then.
     """
-    springs, acts = spec.has("contact_spring"), make_acts(spec)
+    springs, acts = row_terms(spec).elastic, make_acts(spec)
 
     def spread(contacts, count, motion):
         # What is pushed by a body that jumps, jumps with it.

@@ -14,6 +14,7 @@ from .anderson import NO_ROUND, make_bring_on
 from .compile import kernel
 from .records import PLANE
 from .spec import Spec
+from .step_terms import step_terms
 
 # Columns before the first pass, which has no middle behind it.
 NO_PASS = NO_ROUND - 1
@@ -27,7 +28,7 @@ def make_mix_velocities(spec: Spec) -> Any:
     rounds: their fixed point; columns: NO_PASS before the first. velocities: those of the
     last solve, and then those of the next middle.
     """
-    turns, bring_on = spec.has("rotation"), make_bring_on(spec)
+    turns, bring_on = step_terms(spec).turns, make_bring_on(spec)
 
     def mix_velocities(bodies, velocities, rounds, columns):
         point, defect = rounds.point, rounds.defect

@@ -37,6 +37,7 @@ from .rotation import inertia_times, inverse_inertia_times, is_round
 from .row_terms import make_acts, row_terms
 from .solvers.solver import ContactSystem
 from .spec import Spec
+from .step_terms import step_terms
 
 # Each pass gains some two digits where bodies turn by a tenth of a radian in a step.
 PASSES = 8
@@ -53,7 +54,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     After a solve at the start of the step. Bodies then stand at the middle: see `make_stand_up`.
     append_contact, preload: kernels of `respond`; preload: None where nothing is preloaded.
     """
-    friction, turns = row_terms(spec).frictional, spec.has("rotation")
+    friction, turns = row_terms(spec).frictional, step_terms(spec).turns
     bilateral, acts = row_terms(spec).bilateral, make_acts(spec)
     uneven = has_hook(spec, "turn_uneven")
     is_turning, begin_slip = make_is_turning(spec), make_begin_slip(spec)
@@ -65,7 +66,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     impulse_of, go_on = make_impulse_of(spec), make_go_on(spec)
     apply_start, take_kept = make_apply_start(spec), make_take_kept(spec)
     keeps_free, keep_free = made_once(spec, "keep_free")
-    at_surface, loaded = spec.has("impact_time"), preload is not None
+    at_surface, loaded = step_terms(spec).timed_impacts, preload is not None
     forget_history = make_forget_history(spec)
     residual, mix_velocities = make_residual(spec), make_mix_velocities(spec)
     beside = has_hook(spec, "act_beside")

@@ -20,6 +20,7 @@ from .joint_turn import make_joint_velocity
 from .records import PLANE
 from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 from .vectors import Vec3, dot, length
 
 # Change of a surface's velocity in half a step that a row may miss [m/s]: what solves leave.
@@ -42,7 +43,7 @@ SLIDES = 2.0
 
 def make_stirs(spec: Spec) -> Any:
     """Return `kernel(bodies, motion) -> whether anything moves as the step begins`."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def stirs(bodies, motion):
         for i in range(motion.shape[0]):
@@ -61,7 +62,7 @@ def make_stirs(spec: Spec) -> Any:
 
 def make_is_turning(spec: Spec) -> Any:
     """Return `kernel(contacts, count, bodies, motion, params) -> whether the geometry changes`."""
-    turns, ropes = spec.has("rotation"), spec.has("rope")
+    turns, ropes = step_terms(spec).turns, row_terms(spec).taut
 
     def is_turning(contacts, count, bodies, motion, params):
         for c in range(count):
@@ -97,9 +98,9 @@ def make_lasting(spec: Spec) -> Any:
 
     Whether it lasts, by how fast its surfaces approach before forces act. velocities: after them.
     """
-    friction, springs = row_terms(spec).frictional, spec.has("contact_spring")
-    ropes, bilateral = spec.has("rope"), row_terms(spec).bilateral
-    turns, normal_velocity = spec.has("rotation"), make_normal_velocity(spec)
+    friction, springs = row_terms(spec).frictional, row_terms(spec).elastic
+    ropes, bilateral = row_terms(spec).taut, row_terms(spec).bilateral
+    turns, normal_velocity = step_terms(spec).turns, make_normal_velocity(spec)
 
     def is_twisted(v, m):
         return v.wx != m.wx or v.wy != m.wy or v.wz != m.wz
@@ -179,7 +180,7 @@ def make_shift(spec: Spec) -> Any:
     terms = row_terms(spec)
     friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")
-    swept, ropes = spec.has("fast_bodies"), spec.has("rope")
+    swept, ropes = row_terms(spec).swept, row_terms(spec).taut
     bilateral, bounded = terms.bilateral, terms.bounded
     joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
     normal_velocity = make_normal_velocity(spec)

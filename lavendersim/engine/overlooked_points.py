@@ -25,6 +25,7 @@ from .effects import made_once
 from .foreseen_impacts import FLIGHT, make_is_impact
 from .records import SPHERE
 from .spec import Spec
+from .step_terms import step_terms
 from .vectors import Vec3, cross, dot, length, minus, position
 
 # What a part may lead a point without a row into the other surface [m]: the next part would give up
@@ -76,9 +77,9 @@ def make_look_over(spec: Spec) -> Any:
     poses: rows of the bodies as the part began. length: 0 where nothing overlaps; else the longest
     that the part may be when it is made again [s].
     """
-    rate, turns = make_rate(spec), spec.has("rotation")
+    rate, turns = make_rate(spec), step_terms(spec).turns
     forced, is_impact = make_forced(spec), make_is_impact(spec)
-    restitution = spec.has("restitution")
+    restitution = step_terms(spec).rebounds
     falls, restitution_at = made_once(spec, "restitution_at")
 
     def turned(n, w, arm, dt):

@@ -8,11 +8,12 @@ from .approach import NEVER
 from .compile import kernel
 from .effects import has_hook
 from .spec import Spec
+from .step_terms import step_terms
 
 
 def has_parts(spec: Spec) -> bool:
     """Whether the steps of an engine are made in parts."""
-    return spec.has("impact_order") or spec.has("error_control")
+    return step_terms(spec).ordered_impacts or step_terms(spec).substeps
 
 
 def make_gather_parts(spec: Spec) -> Any:

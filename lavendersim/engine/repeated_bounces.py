@@ -14,6 +14,7 @@ from .compile import kernel
 from .effects import made_once
 from .foreseen_impacts import FLIGHT
 from .spec import Spec
+from .step_terms import step_terms
 
 # Slowest landing, in what forces change in a step: what is slower sinks in by half of that, less
 # than a nanometre, and solvers leave a resting body as much.
@@ -22,21 +23,8 @@ STILL = 1e-5
 
 def bounces_repeat(spec: Spec) -> bool:
     """Whether impacts of a contact alone are looked at beyond the first of a step."""
-    repeat = spec.has("impact_time")
-    # What else acts on a contact that flies, or as it is met: its bounces are no powers of e.
-    ordered, drag, cohesion = spec.has("impact_order"), spec.has("drag"), spec.has("cohesion")
-    compliance, spring = spec.has("compliance"), spec.has("spring")
-    if ordered:
-        repeat = False
-    if drag:
-        repeat = False
-    if cohesion:
-        repeat = False
-    if compliance:
-        repeat = False
-    if spring:
-        repeat = False
-    return repeat
+    terms = step_terms(spec)
+    return terms.timed_impacts and not (terms.ordered_impacts or terms.bounces_vary)
 
 
 def make_bounce_on(spec: Spec) -> Any:

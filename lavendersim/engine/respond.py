@@ -26,6 +26,7 @@ from .row_terms import make_acts, row_terms
 from .solvers.catalogue import SOLVERS
 from .solvers.solver import ContactSystem
 from .spec import Spec
+from .step_terms import step_terms
 
 
 def make_solve(spec: Spec) -> Any:
@@ -65,13 +66,13 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     _, settle = made_once(spec, "limit_impacts", solve, classify)
     projects, project_positions = made_once(spec, "project")
     stores, contact_energy = made_once(spec, "contact_energy")
-    logs = spec.has("contact_log")
+    logs = has_hook(spec, "log_contacts")
     keeps_free, keep_free = made_once(spec, "keep_free")
     loads = made_by(spec, "preload")
     loaded = bool(loads)
     preload: Any = chain(loads, spec) if loaded else None
 
-    ordered, centred = spec.has("impact_order"), spec.has("contact_midpoint")
+    ordered, centred = step_terms(spec).ordered_impacts, step_terms(spec).centred
     lasting: Any = make_lasting(spec) if centred else None
     stirs: Any = make_stirs(spec) if centred else None
     bilateral = row_terms(spec).bilateral
@@ -80,7 +81,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     if centred:
         midpoint_passes = make_midpoint_passes(spec, append_contact, preload, solve)
     stand_up: Any = make_stand_up(spec) if centred else None
-    overlooks = spec.has("overlooked_points")
+    overlooks = step_terms(spec).overlooks
     look_over: Any = make_look_over(spec) if overlooks else None
 
     beside = centred and has_hook(spec, "act_beside")
@@ -216,7 +217,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
 
 def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
     """Return `kernel(contacts, velocities, motion, params, counters, log)`: for no contact."""
-    logs, keeps = spec.has("contact_log"), keeps_motion(spec)
+    logs, keeps = has_hook(spec, "log_contacts"), keeps_motion(spec)
     classify: Any = make_classify(spec) if keeps else None
 
     def pass_by(contacts, velocities, motion, params, counters, log):

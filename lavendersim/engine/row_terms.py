@@ -7,8 +7,9 @@ from functools import cache
 from typing import Any
 
 from .effects import effects_of
-from .effects.effect import RowTerms, kernel
+from .effects.effect import kernel
 from .spec import Spec
+from .terms import RowTerms
 
 
 @cache

@@ -33,6 +33,7 @@ from .spring_midpoint import make_find
 from .spring_surfaces import make_note_working
 from .spring_turn import TWISTED
 from .spring_unions import make_unions
+from .step_terms import step_terms
 from .vectors import Vec3, cross, length
 
 PASSES = 40
@@ -54,7 +55,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     """
     from .rotation import inertia_times, inverse_inertia_times
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
     find = make_find(spec, place).find
     settle = make_limit(spec, place).settle
     join, gains, pull, put = make_unions(spec, place)
@@ -63,7 +64,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     forget_history = make_forget_history(spec)
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     warms, store_contacts = made_once(spec, "store")
-    rebounds = spec.has("restitution") and spec.has("impact_order")
+    rebounds = step_terms(spec).rebounds and step_terms(spec).ordered_impacts
     note_working = make_note_working(spec)
 
     def read(links, x):

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from .compile import kernel
 from .spec import Spec
+from .step_terms import step_terms
 from .vectors import Vec3, cross, dot, length, minus, plus, plus_scaled, position, scaled
 
 
@@ -33,7 +34,7 @@ def make_group(spec: Spec, place: Any) -> GroupKernels:
     """Return the kernels; place: that of `effects.spring`."""
     from .rotation import inertia_times
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def label(links, bodies):
         # Every movable body has the group of the lowest of those that springs join it to.

@@ -7,7 +7,7 @@ for which its energy is enough:
     what the impulses so far lead to
     x_0 + dt (V_c + t (v - V_c)), turned by dt t omega;    t = 1, 1/2, 1/4, ..., 0
 Of a group that something holds it is what it had as the step began and the work of forces over the
-way to that pose: it hangs from its springs, and what it does not fall it does not gain.
+displacement to that pose: it hangs from its springs, and gains only what it falls.
 v, omega: with the impulses J = dt (k (l_0 - L) + s v_l)/(1 + dt s K), s = k dt + c, of the implicit
 Euler rule along d_0, all springs at once, which change no omega by more than a radian in a step;
 V_c: of the group's centre. In a pose springs store V_1 and the angular momentum h takes
@@ -25,6 +25,7 @@ from .compile import kernel
 from .spec import Spec
 from .spring_group import make_group
 from .spring_turn import PLACED, make_twist
+from .step_terms import step_terms
 from .vectors import Vec3, cross, dot, length, minus, plus, plus_scaled, position, scaled
 
 SWEEPS = 20
@@ -51,7 +52,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
     """
     from .rotation import inverse_inertia_times, orient, turn
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
     twist: Any = make_twist(spec) if turns else None
 
     group_of = make_group(spec, place)
@@ -124,7 +125,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
     freed = kernel(freed, spec)
 
     def work_on(body, m, dt):
-        # Of forces and torques, over the way of the step; body: where it begins.
+        # Of forces and torques, over the displacement in the step; body: where it begins.
         pulled, shift = Vec3(m.dvx, m.dvy, m.dvz), Vec3(body.shift_x, body.shift_y, body.shift_z)
         work = dot(pulled, shift) / (body.inv_m * dt)
         if turns:
@@ -227,7 +228,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
     take = kernel(take, spec)
 
     def aim(bodies, velocities, motion, group, centre, part):
-        # centre: its mean velocity in the step, and that at its end; part: the share of the way,
+        # centre: its mean velocity in the step, and that at its end; part: the share,
         # and the timestep. Returns the work of forces.
         centred, ended, work = centre[0], centre[1], 0.0
         t, dt = part
@@ -293,7 +294,7 @@ def make_limit(spec: Spec, place: Any) -> LimitKernels:
             if body.group == group:
                 m = motion[i]
                 u, w = freed(body, m)
-                if anchored:  # what forces add is their work over the way that is found
+                if anchored:  # what forces add is their work over the displacement that is found
                     u = Vec3(m.vx, m.vy, m.vz)
                     if turns:
                         w = Vec3(m.wx, m.wy, m.wz)

@@ -27,6 +27,7 @@ from .spec import Spec
 from .spring_limit import make_limit
 from .spring_newton import make_newton_step
 from .spring_turn import TWISTED, make_mean_spin
+from .step_terms import step_terms
 from .vectors import Vec3, cross, dot, length, minus, plus, position, scaled
 
 PASSES = 50
@@ -63,7 +64,7 @@ def make_find(spec: Spec, place: Any) -> SpringSolve:
     """
     from .rotation import inverse_inertia_times, is_round
 
-    turns, uneven = spec.has("rotation"), spec.has("gyroscopic")
+    turns, uneven = step_terms(spec).turns, step_terms(spec).uneven
     mean_spin: Any = make_mean_spin(spec) if turns else None
 
     def mean_lever(body, r, v, m, dt):
@@ -345,7 +346,7 @@ def make_act_midway(spec: Spec, place: Any) -> Any:
     place: kernel of `effects.spring`. Velocities change; counters.spring_not_converged counts the
     solves that find no impulses, whose bodies `spring_limit` places.
     """
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
     note_start, find = make_find(spec, place)
     limit: Any = make_limit(spec, place).limit
 

@@ -13,6 +13,7 @@ from typing import Any
 from .compile import kernel
 from .integrate import make_displace
 from .spec import Spec
+from .step_terms import step_terms
 
 HALVINGS = 8
 
@@ -24,7 +25,7 @@ def make_limit_projection(spec: Spec, place: Any) -> Any:
     """
     from .rotation import inertia_times, turn
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
     displace = make_displace(spec)
 
     def energy_of(links, bodies, velocities):

@@ -12,7 +12,9 @@ from typing import Any
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import has_hook
+from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 
 
 def make_note_working(spec: Spec) -> Any:
@@ -20,9 +22,9 @@ def make_note_working(spec: Spec) -> Any:
 
     rows: bodies where the step begins, joined.
     """
-    kinematic = spec.has("kinematic")
-    compliance, springs = spec.has("compliance"), spec.has("contact_spring")
-    moving, turns = has_hook(spec, "surface_velocity"), spec.has("rotation")
+    kinematic = step_terms(spec).kinematic
+    compliance, springs = row_terms(spec).compliant, row_terms(spec).elastic
+    moving, turns = has_hook(spec, "surface_velocity"), step_terms(spec).turns
 
     def moves(body, v):
         found = False

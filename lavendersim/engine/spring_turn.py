@@ -15,6 +15,7 @@ from typing import Any
 
 from .compile import kernel
 from .spec import Spec
+from .step_terms import step_terms
 from .vectors import Vec3, cross, dot, from_body, into_body, minus, plus, scaled
 
 PASSES = 20
@@ -32,7 +33,7 @@ def make_mean_spin(spec: Spec) -> Any:
     body: as the step begins, with a mean spin to begin from, world; v.w: its spin after impulses,
     by the inertia it begins with; m.w: its spin before them.
     """
-    uneven = spec.has("gyroscopic")
+    uneven = step_terms(spec).uneven
 
     def product(body, p, q):
         # p x I^-1 q, body axes.

@@ -10,9 +10,11 @@ from typing import Any, NamedTuple
 
 from .compile import kernel
 from .integrate import make_displace
+from .row_terms import row_terms
 from .spec import Spec
 from .spring_surfaces import make_stored_in_contacts
 from .spring_turn import BOTH
+from .step_terms import step_terms
 from .vectors import Vec3, minus, plus_scaled, scaled
 
 # Energy won in a step, of what there is, that solves and round-off leave [-].
@@ -38,9 +40,9 @@ def make_unions(spec: Spec, place: Any) -> Unions:
     """Return the kernels; place: kernel of `effects.spring`. rows: bodies where the step begins."""
     from .rotation import inertia_times
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
     displace = make_displace(spec)
-    yields = spec.has("contact_spring")
+    yields = row_terms(spec).elastic
     stored_in_contacts: Any = make_stored_in_contacts(spec) if yields else None
 
     def unite(a, b):

@@ -55,6 +55,7 @@ from .step_doubling import (
     make_begin_substep,
     make_end_span,
 )
+from .step_terms import step_terms
 
 
 def make_advance(spec: Spec) -> Any:
@@ -65,7 +66,7 @@ def make_advance(spec: Spec) -> Any:
     touches, record_residuals = spec.touches, has_hook(spec, "sweep_row")
     # The row of a step hashes the poses, whether or not they are logged.
     make_log_pose: Any = BY_NAME["pose_log"].hooks.log_pose
-    log_pose = make_log_pose(spec) if spec.has("step_log") else None
+    log_pose = make_log_pose(spec) if has_hook(spec, "log_step") else None
     records, log_step = made_once(spec, "log_step", log_pose, made_by(spec, "step_row"))
     accelerations = made_by(spec, "accelerate")
     accelerates, keeps = bool(accelerations), keeps_motion(spec)
@@ -96,7 +97,7 @@ def make_advance(spec: Spec) -> Any:
     start_step: Any = chain(starting, spec) if starts else None
     ordered, order = made_once(spec, "order_impacts")
     note_acceleration: Any = make_note_acceleration(spec) if ordered else None
-    controlled = spec.has("error_control")
+    controlled = step_terms(spec).substeps
     in_parts = has_parts(spec)
     gather: Any = make_gather_parts(spec) if in_parts else None
     forget_history: Any = make_forget_history(spec) if in_parts else None
@@ -109,7 +110,7 @@ def make_advance(spec: Spec) -> Any:
     count_limits: Any = make_count_limits(spec) if iterates else None
     reset_counts = make_reset_counts(spec)
     triggered, meet_triggers = made_once(spec, "meet_triggers")
-    overlooks = spec.has("overlooked_points")
+    overlooks = step_terms(spec).overlooks
     forget_whole: Any = make_forget_whole(spec) if overlooks else None
     sleeps, measure_speeds = made_once(spec, "measure_speeds")
     _, wake = made_once(spec, "wake")

@@ -13,10 +13,12 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from .compile import kernel
+from .effects import has_hook
 from .error_estimate import PATH, make_add_paths, make_estimate
 from .record_layout import cache_dtype, step_row_dtype
 from .records import COUNTERS, Field, dtype
 from .spec import Spec
+from .step_terms import step_terms
 
 # What is being made of a substep.
 NOTHING, WHOLE, FIRST_HALF, SECOND_HALF = 0, 1, 2, 3
@@ -64,16 +66,16 @@ class Control(NamedTuple):
 
 def allocate_control(spec: Spec, bodies: np.ndarray, velocities: np.ndarray, capacity: int) -> Any:
     """Return the memory of error control for so many contacts; () without it."""
-    if not spec.has("error_control"):
+    if not step_terms(spec).substeps:
         return ()
     return Control(
         record=np.zeros(1, dtype(CONTROL)),
         paths=np.zeros(len(bodies), dtype(PATH)),
         bodies=np.zeros_like(bodies),
         velocities=np.zeros_like(velocities),
-        cache=np.zeros(capacity if spec.has("warm_start") else 0, cache_dtype(spec)),
+        cache=np.zeros(capacity if has_hook(spec, "match") else 0, cache_dtype(spec)),
         counters=np.zeros(1, dtype(COUNTERS)),
-        row=np.zeros(1 if spec.has("step_log") else 0, step_row_dtype(spec)),
+        row=np.zeros(1 if has_hook(spec, "log_step") else 0, step_row_dtype(spec)),
         whole=np.zeros_like(bodies),
         differences=np.zeros_like(velocities),
     )
@@ -91,7 +93,7 @@ def make_begin_substep(spec: Spec) -> Any:
 
     rows: of steps, in the log.
     """
-    warms, logs = spec.has("warm_start"), spec.has("step_log")
+    warms, logs = has_hook(spec, "match"), has_hook(spec, "log_step")
 
     def begin_substep(state, params, counters, rows):
         control = state.control
@@ -121,8 +123,8 @@ def make_begin_substep(spec: Spec) -> Any:
 
 def make_restore(spec: Spec) -> Any:
     """Return `kernel(state, params, counter, rows)`: all as the substep began."""
-    warms, logs, sleeps = spec.has("warm_start"), spec.has("step_log"), spec.has("sleeping")
-    turns = spec.has("rotation")
+    warms, logs = has_hook(spec, "match"), has_hook(spec, "log_step")
+    sleeps, turns = has_hook(spec, "update_sleeping"), step_terms(spec).turns
 
     def wake(kept, body):
         # Who woke in the substep is awake when it is made again.

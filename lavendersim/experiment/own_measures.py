@@ -43,8 +43,8 @@ def with_own_measures(root: Node, path: Path, report: Report) -> tuple[Node, str
     for name in named.keys() - found.keys():
         unknown, kinds = named[name].get("kind"), list(own.kinds)
         if unknown.text is not None and near(unknown.text, kinds):
-            said = f"unknown kind {quoted(unknown.text)} in measure.{name}"
-            report.add(unknown.mark, said + nearest(unknown.text, kinds))
+            sentence = f"unknown kind {quoted(unknown.text)} in measure.{name}"
+            report.add(unknown.mark, sentence + nearest(unknown.text, kinds))
     if not found:
         return None
     tree = root

@@ -43,7 +43,7 @@ LOOKS: Final = {
     "beyond bounds": EntryLook("\u25a0", "fails", "stopped at the first step beyond a bound"),
     "diverged": EntryLook("\u221e", "fails", "diverged: its numbers ended"),
     "refused": EntryLook("\u2205", "other", "refused: the case cannot be put to it"),
-    "not judged": EntryLook("\u25cb", "other", "not judged: the engine does not tell enough"),
+    "not judged": EntryLook("\u25cb", "other", "not judged: the engine does not report enough"),
     "died": EntryLook("\u2020", "fails", "the run broke off: a defect of lavender"),
 }
 NOT_RUN: Final = EntryLook("\u2013", "other", "not run")

@@ -94,25 +94,25 @@ def _caption(table: CostTable) -> str:
         reference = f", against the same run at a timestep of {truth.timestep} s"
     if table.axes:
         reference += f" (the worst of {table.cells_per_setting} cells of {', '.join(table.axes)})"
-    said = [*(table.sentences or [target.sentence for target in table.targets])]
-    said += [f"{engine}: {effort}" for engine, effort in table.efforts.items()]
-    said += [f"{engine} refused: {why}" for engine, why in table.refused.items()]
+    sentences = [*(table.sentences or [target.sentence for target in table.targets])]
+    sentences += [f"{engine}: {effort}" for engine, effort in table.efforts.items()]
+    sentences += [f"{engine} refused: {why}" for engine, why in table.refused.items()]
     if table.quick:
-        said = [
+        sentences = [
             "Quick: the grid has every other value of the config's lists, and their last",
-            *said,
+            *sentences,
         ]
     if table.interrupted:
-        said = [table.interrupted[0].upper() + table.interrupted[1:], *said]
+        sentences = [table.interrupted[0].upper() + table.interrupted[1:], *sentences]
     if any(row.least_error is not None for row in table.rows):
-        said = [f"Upright lines end at the least error over {PERTURBED}", *said]
+        sentences = [f"Upright lines end at the least error over {PERTURBED}", *sentences]
     return (OF_ENGINES if table.compares_engines else CAPTION).format(
         measure=table.error.measure,
         truth=reference,
         repeats=table.repeats,
         processor=table.machine["processor"],
         clock=table.clock,
-        targets=". ".join(said).replace(" us ", " µs ") + ".",
+        targets=". ".join(sentences).replace(" us ", " µs ") + ".",
     )
 
 

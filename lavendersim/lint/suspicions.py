@@ -28,7 +28,7 @@ def suspicions(experiment: Experiment) -> list[Defect]:
     found: dict[tuple[str, int, int], Defect] = {}
     of_file = (defect for rule in OF_FILES for defect in rule(experiment))
     of_cells = (
-        defect for cell in _telling(experiment) for rule in OF_CELLS for defect in rule(cell)
+        defect for cell in _sampled(experiment) for rule in OF_CELLS for defect in rule(cell)
     )
     for defects in (of_file, of_cells):
         for defect in defects:
@@ -46,7 +46,7 @@ def warn(experiment: Experiment, strict: bool = False) -> None:
         warnings.warn_explicit(str(message), SuspiciousScene, defect.file, defect.line)
 
 
-def _telling(experiment: Experiment) -> Iterator[Cell]:
+def _sampled(experiment: Experiment) -> Iterator[Cell]:
     """Yield the first cell, and for each value of each axis the first cell that has it."""
     seen: set[tuple[str, object]] = set()
     count = 0

@@ -38,7 +38,7 @@ def outcomes_of(always: Always, cell: Cell) -> dict[str, Outcome]:
         for section in sections_of(trace, is_whole(ended)):
             for one in checks.over(section):
                 worst.take(one, section, 1 if section.before else 0, len(section.step))
-        worst.untold = checks.untold
+        worst.not_reported = checks.not_reported
     except LavenderError as error:  # a log that is damaged
         return {check: failure("a log that can answer", str(error)) for check in checks_of(always)}
     return worst.outcomes(ended, cell)
@@ -65,7 +65,7 @@ class WorstStates:
     def __init__(self, always: Always) -> None:
         self._always = always
         self._found: dict[str, _Worst] = {}
-        self.untold: dict[str, str] = {}  # checks that the engine does not tell enough for
+        self.not_reported: dict[str, str] = {}  # checks that the engine does not report enough for
 
     def take(self, one: CheckedSteps, section: Trace, first: int, end: int) -> None:
         """Count the states first..end-1 of a section in."""
@@ -86,9 +86,9 @@ class WorstStates:
             missing = failure("a complete run", ended, not is_whole(ended))
             return dict.fromkeys(checks_of(self._always), missing)
         early = "" if is_whole(ended) else ended
-        untold = {name: unjudged(why) for name, why in self.untold.items()}
+        not_reported = {name: unjudged(why) for name, why in self.not_reported.items()}
         judged = {name: _outcome(one, early, cell) for name, one in self._found.items()}
-        return judged | untold
+        return judged | not_reported
 
 
 def time_of(step: Rows, row: int) -> float:

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from lavendersim.measures.always import COMPLETE
-from lavendersim.measures.selection import coordinates_text, select, telling_axes
+from lavendersim.measures.selection import coordinates_text, distinguishing_axes, select
 from lavendersim.measures.specs.always import BEYOND_BOUNDS, COMPLETES, DIVERGES, STOPPING
 from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.measures.verdict import NO_TOLERANCE, Verdict
@@ -74,7 +74,7 @@ def trials(
         if across or not chosen:
             made.append(ControlTrial(control, control.name, tuple(chosen)))
             continue
-        axes = telling_axes(chosen, control.at)
+        axes = distinguishing_axes(chosen, control.at)
         for cell in chosen:
             shown = [axis for axis in cell.coordinates if axis in axes]
             where = coordinates_text(cell.coordinates, shown)

@@ -68,7 +68,7 @@ class CostRow:
     front: bool = False  # whether none of its engine is cheaper and as good
     engine: str = LAVENDER  # or a variant of another, which has no numerics but the timestep
     settings: dict[str, Any] = field(default_factory=dict)  # of that engine, beside the variant's
-    contacts: float | None = None  # a step, on average; None: its engine does not tell
+    contacts: float | None = None  # a step, on average; None: its engine does not report it
     iterations: float | None = None  # a step, likewise
 
     @property

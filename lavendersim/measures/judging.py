@@ -15,7 +15,7 @@ from lavendersim.measures import controls
 from lavendersim.measures.always import COMPLETE, PREFIX
 from lavendersim.measures.cell_judgements import judge_cell
 from lavendersim.measures.interfaces import Cell
-from lavendersim.measures.selection import coordinates_text, select, telling_axes
+from lavendersim.measures.selection import coordinates_text, distinguishing_axes, select
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec
@@ -133,7 +133,7 @@ def nodes_of(name: str, cells: Sequence[Any], selection: Mapping[str, Any]) -> l
 
 def _places_of(cells: Sequence[Any], selection: Mapping[str, Any]) -> list[str]:
     """Return what tells each of some cells from the others; empty where nothing does."""
-    axes = telling_axes(cells, selection)
+    axes = distinguishing_axes(cells, selection)
     return [
         coordinates_text(cell.coordinates, [axis for axis in cell.coordinates if axis in axes])
         for cell in cells
@@ -184,7 +184,7 @@ def _verdict(name: str, claim: Claim, outcome: Outcome, measure: str) -> Verdict
         measured=outcome.measured,
         expected=outcome.expected,
         tolerance=outcome.tolerance,
-        said="",
+        own_message="",
         path=_path(claim.cells),
         follows=outcome.follows,
         margin=outcome.margin,

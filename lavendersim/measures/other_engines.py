@@ -1,6 +1,6 @@
 """What of the checks of every step the log of another engine cannot answer, and why.
 
-A check that takes what an engine does not tell is not judged: neither met nor failed.
+A check that takes what an engine does not report is not judged: neither met nor failed.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ def unanswered(trace: Trace) -> dict[str, str]:
     if engine is None:
         return {}
     peer = peer_of(engine.name)
-    found = {"residual": f"{peer.title} tells no residual of its contacts in m/s"}
+    found = {"residual": f"{peer.title} reports no residual of its contacts in m/s"}
     if IMPULSE not in peer.reports(engine.name):
-        silent = f"{engine.name} tells no impulses of contacts"
+        silent = f"{engine.name} reports no impulses of contacts"
         found |= {"impulses": silent, "momentum": silent}
     elif not peer.momentum:
-        found["momentum"] = f"the impulses that {peer.title} tells are not all that acts"
+        found["momentum"] = f"the impulses that {peer.title} reports are not all that acts"
     if why := unknown_overlap(trace.config.scene):
         found["penetration"] = f"{why} from poses alone"
     return found

@@ -59,7 +59,7 @@ def coordinates_text(coordinates: Mapping[str, Any], axes: Iterable[str]) -> str
     return ", ".join(f"{axis}={label(coordinates[axis])}" for axis in axes)
 
 
-def telling_axes(cells: Sequence[Cell], selection: Mapping[str, Any]) -> set[str]:
+def distinguishing_axes(cells: Sequence[Cell], selection: Mapping[str, Any]) -> set[str]:
     """Return the axes that tell these cells apart, and those their selection names."""
     axes = {axis for cell in cells for axis in cell.coordinates}
     varied = {

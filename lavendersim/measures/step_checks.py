@@ -68,14 +68,14 @@ class StepChecks:
         self._always, self._energy, self._passes = always, EnergyBalance(passes), passes
         self._checks = [check for check in checks_of(always) if check in checks]
         self._bounds: dict[str, float] = {}
-        self.untold: dict[str, str] = {}  # checks that the log cannot answer, with reasons
+        self.not_reported: dict[str, str] = {}  # checks that the log cannot answer, with reasons
 
     def over(self, trace: Trace) -> Iterator[CheckedSteps]:
         """Yield the checks that are made of a log or its next section, in the order of CHECKS."""
-        self.untold = unanswered(trace)
+        self.not_reported = unanswered(trace)
         sums = self._passes.contacts(trace)
         for check in self._checks:
-            if check in self.untold:
+            if check in self.not_reported:
                 continue
             if check not in self._bounds:
                 self._bounds[check] = bound_of(check, self._always, trace)
@@ -130,7 +130,7 @@ def _momentum(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
 
 
 def _penetration(trace: Trace, sums: ContactSums, passes: Passes) -> Numbers:
-    if trace.config.engine is not None:  # one geometry for all engines: not what each tells of it
+    if trace.config.engine is not None:  # one geometry for all engines: not what each reports of it
         return overlap_of_rows(trace, np.arange(len(trace.step))), _no_body
     return sums.deepest, _of_contacts(trace, lambda contacts: contacts["penetration"])
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lavendersim.errors import UNREPORTED, LavenderError, unanswerable
+from lavendersim.errors import LavenderError, is_not_reported, unanswerable
 from lavendersim.measures.interfaces import Cell, Floats, Value
 from lavendersim.measures.kinds.arithmetic import derived
 from lavendersim.measures.registry import beside_form, evaluate
@@ -32,7 +32,7 @@ class Values:
         """Return the measure of one cell; a single number is a row of one."""
         known = self._taken.get(cell.index, {}).get(measure) if self._taken else None
         if isinstance(known, str):
-            raise unanswerable(known) if known.endswith(UNREPORTED) else LavenderError(known)
+            raise unanswerable(known) if is_not_reported(known) else LavenderError(known)
         if known is not None:
             return np.atleast_1d(np.asarray(known, dtype=np.float64))
         key = (measure, id(cell))

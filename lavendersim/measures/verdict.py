@@ -17,7 +17,7 @@ class Outcome(NamedTuple):
     reason: str = ""  # where it failed, when the numbers do not say it
     follows: bool = False  # failed because the cell did not complete
     margin: float = float("nan")  # share of the bound that is left; below 0 outside [-]
-    judged: bool = True  # False: the engine does not tell what it takes, `reason` says so
+    judged: bool = True  # False: the engine does not report what it takes, `reason` says so
 
 
 class Verdict(NamedTuple):
@@ -29,13 +29,13 @@ class Verdict(NamedTuple):
     measured: float  # the decisive number: of a row, or of several cells, the worst
     expected: str
     tolerance: str
-    said: str  # all of its message, where that is not of the numbers alone
+    own_message: str  # all of its message, where that is not of the numbers alone
     path: str  # of the log, or of the logs' directory when several are compared
     follows: bool = False  # failed because the cell did not complete
     margin: float = float("nan")  # share of the bound that is left; NaN where there is no such
     measure: str = ""  # what was judged
     reason: str = ""  # where it failed, when the numbers do not say it
-    judged: bool = True  # False: the engine does not tell what it takes; then it is not passed
+    judged: bool = True  # False: the engine does not report what it takes; then it is not passed
 
     @property
     def fails(self) -> bool:
@@ -45,8 +45,8 @@ class Verdict(NamedTuple):
     @property
     def message(self) -> str:
         """Everything that a person needs; of many verdicts it is longer than what it is made of."""
-        if self.said:
-            return self.said
+        if self.own_message:
+            return self.own_message
         lines = [
             f"{self.node}: {self.word}",
             f"  measured   {self.measured!r}{f' ({self.measure})' if self.measure else ''}",
@@ -69,14 +69,12 @@ class Verdict(NamedTuple):
         del given["measure"], given["reason"]
         if self.judged:
             del given["judged"]
-        return {
-            "message" if name == "said" else name: self.message if name == "said" else value
-            for name, value in given.items()
-        }
+        given["own_message"] = self.message
+        return {name.removeprefix("own_"): value for name, value in given.items()}
 
 
 def unjudged(reason: str) -> Outcome:
-    """Return the outcome of what an engine does not tell enough to judge."""
+    """Return the outcome of what an engine does not report enough to judge."""
     return Outcome(False, float("nan"), "a log that can answer", NO_TOLERANCE, reason, judged=False)
 
 

@@ -1,6 +1,6 @@
 """Peers: other engines, which run lavender's scenes, each in a process of its own.
 
-    declaration   what an engine says of itself: variants, settings, shapes, keys, what it tells
+    declaration   what an engine says of itself: variants, settings, shapes, keys, what it reports
     catalogue     the engines, by the names that a config has; which are installed
     limits        what of a cell an engine cannot do, each with its key
     description   a cell as adapters read it: bodies, gravity, mixed surfaces, forces of a step

@@ -44,10 +44,10 @@ PEER: Final = Peer(
     surface_keys=frozenset({"friction", "restitution"}),
     mixing={"friction": "least", "restitution": "product"},
     forces=True,
-    tells=POINT + IMPULSE + TANGENTIAL,
+    reported=POINT + IMPULSE + TANGENTIAL,
     momentum=True,
     iterations="none by Dantzig's method, which is direct; by Gauss-Seidel at most as many as are "
-    "set, it does not tell how many",
+    "set, it does not report how many",
     bounded=True,
     capacity="100,000 contacts, instead of its own 1000; the step that has more ends the run",
     repeats="the same bits on one machine",

@@ -35,7 +35,7 @@ class Variant:
 
     doc: str
     settings: Mapping[str, Value] = field(default_factory=dict)
-    tells: tuple[str, ...] | None = None  # of contacts; None: as its engine
+    reported: tuple[str, ...] | None = None  # of contacts; None: as its engine
 
 
 class Knobs(NamedTuple):
@@ -64,15 +64,15 @@ class Peer:
     # given to it pair by pair, or is no key of its own.
     mixing: Mapping[str, str] = field(default_factory=dict)
     forces: bool = False  # constant ones at the centre of mass, for a while
-    tells: tuple[str, ...] = ()  # of contacts, of the above; none: it tells of no contact
+    reported: tuple[str, ...] = ()  # of contacts, of the above; none: it reports no contact
     momentum: bool = False  # its impulses are all that acts beside gravity and forces of a step
     counted: bool = False  # its adapter counts the iterations of each step (`World.iterations`)
     iterations: str = ""  # what these are; or how many a step has, where it does not count them
-    bounded: bool = False  # its adapter tells where contacts had no room (`World.is_full`)
+    bounded: bool = False  # its adapter reports where contacts had no room (`World.is_full`)
     capacity: str = ""  # for how many contacts it has room, and what becomes of more
     repeats: str = ""  # whether two runs agree to the bit, in words
 
     def reports(self, engine: str) -> tuple[str, ...]:
-        """Return what a variant tells of contacts."""
-        tells = self.variants[engine].tells
-        return self.tells if tells is None else tells
+        """Return what a variant reports of contacts."""
+        reported = self.variants[engine].reported
+        return self.reported if reported is None else reported

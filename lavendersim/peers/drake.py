@@ -31,10 +31,10 @@ PEER: Final = Peer(
             doc="the convex problem of SAP, as its papers have it", settings={"model": "sap"}
         ),
         "drake-hydroelastic": Variant(
-            doc="patches of pressure, 10 MPa over 5 cm: boxes stand on faces; it tells of none, as "
+            doc="patches of pressure, 10 MPa over 5 cm: boxes stand on faces; it reports none, as "
             "a patch is no point",
             settings={"hydroelastic": True},
-            tells=(),
+            reported=(),
         ),
         "drake-stiff": Variant(
             doc="1e9 N/m: penetration of micrometres, as rigid as its points may be",
@@ -69,7 +69,7 @@ PEER: Final = Peer(
     surface_keys=frozenset({"friction"}),
     mixing={"friction": "harmonic_mean"},
     forces=True,
-    tells=POINT + IMPULSE + TANGENTIAL,
+    reported=POINT + IMPULSE + TANGENTIAL,
     momentum=True,
     iterations="not reported by its Python",
     capacity="no limit; one point, or one patch, a pair of shapes",

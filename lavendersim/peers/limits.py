@@ -121,6 +121,6 @@ def _of_run(config: CellConfig) -> Iterator[tuple[Path, str]]:
     if config.study.mistake != NO_MISTAKE:
         yield ("study", "mistake"), "makes none of lavender's errors; expected none"
     if config.record.residuals != NONE:
-        yield ("record", "residuals"), "tells no residuals of sweeps; expected none"
+        yield ("record", "residuals"), "reports no residuals of sweeps; expected none"
     if config.record.problems != NONE:
-        yield ("record", "problems"), "tells no contact problems; expected none"
+        yield ("record", "problems"), "reports no contact problems; expected none"

@@ -48,9 +48,9 @@ PEER: Final = Peer(
             doc="as stiff, conjugate gradients", settings={**_STIFF_2, "solver": "CG"}
         ),
         "mujoco-rk4": Variant(
-            doc="as stiff, order 4; its contacts are those of a stage, so it tells of none",
+            doc="as stiff, order 4; its contacts are those of a stage, so it reports none",
             settings={**_STIFF_2, "integrator": "RK4"},
-            tells=(),
+            reported=(),
         ),
         "mujoco-discrete": Variant(
             doc="its discrete integrator, springs of a quarter step, speculative contacts",
@@ -102,7 +102,7 @@ PEER: Final = Peer(
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder", "hull", "compound"}),
     surface_keys=frozenset({"friction", "restitution"}),
     forces=True,
-    tells=POINT + IMPULSE + TANGENTIAL + FRICTION,
+    reported=POINT + IMPULSE + TANGENTIAL + FRICTION,
     momentum=True,
     counted=True,
     iterations="of the convex problem's solver, in the island with the most; by RK4 of its last "

@@ -28,13 +28,13 @@ def messages_of(
     silence: [s] after which it is ended. Whoever stops asking ends it.
     """
     receiver, sender = Pipe(duplex=False)
-    with TemporaryFile() as said:
+    with TemporaryFile() as output:
         command = [sys.executable, "-m", module, str(sender.fileno())]
         process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
-            stderr=said,
+            stderr=output,
             pass_fds=(sender.fileno(),),
             start_new_session=True,  # Ctrl-C is for the run, which ends it
             env=os.environ | THREADS,
@@ -54,7 +54,7 @@ def messages_of(
                 try:
                     message: Any = receiver.recv()
                 except (EOFError, OSError):
-                    yield Ended(_death(process.wait(), said))
+                    yield Ended(_death(process.wait(), output))
                     return
                 yield message
                 if isinstance(message, Ended):
@@ -65,9 +65,9 @@ def messages_of(
             receiver.close()
 
 
-def _death(code: int, said: IO[bytes]) -> str:
+def _death(code: int, output: IO[bytes]) -> str:
     """Return how a process died, with the last line that it wrote."""
     how = f"was ended by {signal.Signals(-code).name}" if code < 0 else f"exited with {code}"
-    said.seek(0)
-    lines = said.read().decode(errors="replace").strip().splitlines()
+    output.seek(0)
+    lines = output.read().decode(errors="replace").strip().splitlines()
     return f"crashed: its process {how}{f' ({lines[-1].strip()})' if lines else ''}"

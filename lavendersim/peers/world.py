@@ -45,7 +45,7 @@ class World(Protocol):
 
     def contacts(self) -> list[tuple[float, ...]]:
         """Return of each contact of the last step its two bodies (rows of the scene), A and B, then
-        what the engine tells, in the order of `Peer.tells`; impulses on B [N s].
+        what the engine reports, in the order of `Peer.reported`; impulses on B [N s].
         """
 
 

@@ -7,17 +7,17 @@ numbers out of bounds with a sentence of its own, and describes itself to JSON S
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, Union, get_args
 
 from pydantic import (
     BaseModel,
     Discriminator,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    Tag,
     ValidationInfo,
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
@@ -51,31 +51,46 @@ def sentence_error(sentence: str) -> PydanticCustomError:
     return PydanticCustomError("lavender", "{sentence}", {"sentence": sentence})
 
 
-class _Form(Discriminator):
-    """A discriminator that is equal to itself alone: a type that has it may be one of a union."""
+class Either:
+    """Annotation of a union whose members have forms of their own; the first that fits is read.
 
-    __eq__ = object.__eq__
-    __hash__ = object.__hash__
-
-
-def either(expected: str, form: Mapping[type, str] | Callable[[Any], str | None]) -> Discriminator:
-    """Return the discriminator of a field that has several forms; `form` names the tag of one.
-
-    form: the tags by the type of the value (a model is written as a dict; `object` is any other
-    type), or what tells the tag.
+    forms: of each member in turn. `float` is any number, `tuple` any list, `dict` any mapping or
+    model, `object` any value; other types are those alone, texts themselves; a tuple: one of them.
     """
 
-    def tag_of(value: Any) -> str | None:
-        if callable(form):
-            return form(value)
-        return form.get(dict if isinstance(value, BaseModel) else type(value), form.get(object))
+    def __init__(self, expected: str, *forms: Any) -> None:
+        self._expected, self._forms = expected, forms
 
-    return _Form(
-        tag_of,
-        custom_error_type="form",
-        custom_error_message=expected,
-        custom_error_context={"expected": expected},
-    )
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Return what validates a value."""
+        tagged = [Annotated[one, Tag(f"form {k}")] for k, one in enumerate(get_args(source))]
+        discriminator = Discriminator(
+            self._form_of,
+            custom_error_type="form",
+            custom_error_message=self._expected,
+            custom_error_context={"expected": self._expected},
+        )
+        union: Any = Union[tuple(tagged)]  # noqa: UP007
+        return handler.generate_schema(Annotated[union, discriminator])
+
+    def _form_of(self, value: Any) -> str | None:
+        return next((f"form {k}" for k, one in enumerate(self._forms) if _fits(value, one)), None)
+
+
+def _fits(value: Any, form: Any) -> bool:
+    if isinstance(form, tuple):
+        return any(_fits(value, one) for one in form)
+    if isinstance(form, str):
+        return isinstance(value, str) and value == form
+    if form is float:
+        return isinstance(value, int | float) and not isinstance(value, bool)
+    if form is tuple:
+        return isinstance(value, tuple | list)
+    if form is dict:
+        return isinstance(value, dict | BaseModel)
+    return form is object or type(value) is form
 
 
 @dataclass(frozen=True)

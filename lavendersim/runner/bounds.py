@@ -70,7 +70,7 @@ class Bounds:
         )
         self._last = step[-1:].copy(), pose[-1:].copy()
         checked = list(self._checks.over(part))
-        self.worst.untold = self._checks.untold
+        self.worst.not_reported = self._checks.not_reported
         first: tuple[int, CheckedSteps] | None = None
         for check in checked if self._stops else ():
             beyond = np.flatnonzero(check.numbers[again:] > check.bound)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from lavendersim.cell import CellConfig
-from lavendersim.errors import UNREPORTED
+from lavendersim.errors import is_not_reported
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.sweeps.cost_grid import Setting
 from lavendersim.experiment.sweeps.perturbed_starts import spread_of, start_of
@@ -179,11 +179,11 @@ def not_converged_steps(not_converged: int, steps: int, tolerance: float | None)
 
 def _taken(experiment: Experiment, measured: Mapping[str, Any]) -> dict[str, Any]:
     """Return every measure of a cell; NaN where the log had no answer, its reason where an engine
-    does not tell what it takes: such a claim is not judged.
+    does not report what it takes: such a claim is not judged.
     """
     values = {name: measured.get(name, NAN) for name in experiment.measures}
     return {
-        name: NAN if isinstance(one, str) and not one.endswith(UNREPORTED) else one
+        name: NAN if isinstance(one, str) and not is_not_reported(one) else one
         for name, one in values.items()
     }
 

@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.effects import effects_of, row_fields
+from lavendersim.engine.step_terms import step_terms
 from lavendersim.experiment.cell import Cell, alike
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.scene.expected_contacts import expected_contacts
@@ -22,7 +23,7 @@ IMPACTS: Final = 0.25
 # More than logs take, by far: twenty contacts of 250 B a body. It is known at once.
 MOST_PER_STEP: Final = 1_000  # [B]
 MOST_PER_BODY: Final = 5_000  # [B] and step
-TELLING: Final = 200  # cells; one takes 0.2 ms
+MOST_SAMPLED: Final = 200  # cells; one takes 0.2 ms
 
 
 class LogSpace(NamedTuple):
@@ -58,7 +59,7 @@ def expected_log_size(config: CellConfig, plan: Plan, as_written: str) -> float:
     )
     moving = sum(is_movable(body) or body.kinematic for body in bodies)
     contacts = expected_contacts(config)
-    if spec.has("impact_order"):
+    if step_terms(spec).ordered_impacts:
         contacts += IMPACTS * moving
     content = StepContent(
         step_columns=len(row_fields(spec, "step")),
@@ -71,7 +72,7 @@ def expected_log_size(config: CellConfig, plan: Plan, as_written: str) -> float:
 
 
 def expected_log_sizes(
-    cells: Sequence[Cell], plans: Sequence[Plan], as_written: str, most: int = TELLING
+    cells: Sequence[Cell], plans: Sequence[Plan], as_written: str, most: int = MOST_SAMPLED
 ) -> list[int]:
     """Return about how many bytes [B] the log of each cell will have.
 

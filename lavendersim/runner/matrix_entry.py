@@ -7,7 +7,7 @@ beyond bounds  a cell was stopped at the first step that broke a bound of `alway
 diverged       a cell ended where its numbers did
 refused        the case cannot be put to this solver
 died           the run itself broke off, which is a defect of lavender
-not judged     the engine tells too little for any claim; of some alone, they stand beside it
+not judged     the engine reports too little for any claim; of some alone, they stand beside it
 """
 
 from __future__ import annotations
@@ -142,7 +142,7 @@ def _of_unjudged(verdicts: Sequence[Verdict]) -> tuple[Word, str]:
     """Return the word where the engine did not tell enough to judge some claims, none failed."""
     left = [verdict.node for verdict in verdicts if not verdict.judged]
     word: Word = NOT_JUDGED if len(left) == len(verdicts) else PASSES
-    return word, f"not judged, the engine does not tell it: {', '.join(left)}"
+    return word, f"not judged, the engine does not report it: {', '.join(left)}"
 
 
 def with_counts(entry: Entry, counts: StepCounts) -> Entry:

@@ -12,7 +12,7 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING
 
 from lavendersim.cell import CellEngine
-from lavendersim.errors import UNREPORTED
+from lavendersim.errors import NOT_REPORTED
 from lavendersim.measures.always import WorstStates
 from lavendersim.peers.catalogue import installed_version, peer_of
 from lavendersim.peers.declaration import Peer
@@ -21,7 +21,7 @@ from lavendersim.peers.process import messages_of
 from lavendersim.trace import TraceWriter, Written
 from lavendersim.trace.recorded import described, partly_recorded
 from lavendersim.trace.schema import CONTACT_COLUMNS, STEP_COLUMNS
-from lavendersim.trace.writer import UNTOLD
+from lavendersim.trace.writer import NOT_REPORTED_COLUMNS
 
 from .accuracy import Accuracy
 from .bounds import Bounds
@@ -93,8 +93,8 @@ def simulate_elsewhere(
 
 
 def absent_topics(planned: dict[str, str], peer: Peer, reported: tuple[str, ...]) -> dict[str, str]:
-    """Return the topics that a log does without: by the plan, and what the engine does not tell."""
-    silent = f"{peer.title} {UNREPORTED}"
+    """Return the topics that a log does without: by the plan, and what is not reported."""
+    silent = f"{peer.title} {NOT_REPORTED}"
     absent = planned | {"/residuals": silent, "/plot/log10_residual": silent}
     return absent if reported else absent | {topic: absent.get(topic, silent) for topic in CONTACTS}
 
@@ -117,13 +117,13 @@ def metadata_of(
         "seed": seeds,
     }
     has = {name for name, _ in step_columns(reported, peer.counted)}
-    untold = {f"/step.{one.name}" for one in STEP_COLUMNS if one.name not in has}
+    not_reported = {f"/step.{one.name}" for one in STEP_COLUMNS if one.name not in has}
     if reported:
         has = {name for name, _ in contact_columns(reported)}
-        untold |= {f"/contacts.{name}" for name in CONTACT_COLUMNS if name not in has}
-    silent = f"{peer.title} {UNREPORTED}"
+        not_reported |= {f"/contacts.{name}" for name in CONTACT_COLUMNS if name not in has}
+    silent = f"{peer.title} {NOT_REPORTED}"
     return {
         "versions": versions(),
         "engine": made_by,
-        UNTOLD: dict.fromkeys(sorted(untold), silent),
+        NOT_REPORTED_COLUMNS: dict.fromkeys(sorted(not_reported), silent),
     }

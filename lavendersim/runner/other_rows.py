@@ -1,7 +1,7 @@
 """Rows of a log from the states of another engine: sums of each step, poses, contacts.
 
 Energy, momentum and the hash of the state are of poses and velocities, by one formula for every
-engine; contacts are what the engine tells of them.
+engine; contacts are what the engine reports of them.
 """
 
 from __future__ import annotations

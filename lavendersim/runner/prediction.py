@@ -33,7 +33,7 @@ PER_CELL: Final = 4e-3  # [s]
 PER_PROCESS: Final = 0.5  # [s]
 PER_STEP_ELSEWHERE: Final = 50e-6  # [s]
 PER_CONTACT_ELSEWHERE: Final = 4e-6  # [s] and step
-TELLING: Final = 100  # cells whose contacts are counted; the others are taken to be like them
+MOST_SAMPLED: Final = 100  # cells whose contacts are counted; the others are taken to be like them
 MOST_CONTACTS: Final = 20  # of a body, by far
 WORTH_SAYING: Final = 60.0  # [s]
 LONGEST: Final = 3600.0  # [s] that nobody is asked about
@@ -123,7 +123,7 @@ def predicted(
     """
     cells = experiment.cells()
     steps = sum(len(one) * one[0].config.steps for one in alike(cells))
-    sampled = cells[:: max(1, len(cells) // TELLING)]
+    sampled = cells[:: max(1, len(cells) // MOST_SAMPLED)]
     work = sum(seconds_of(one.config, expected_contacts(one.config)) for one in sampled)
     seconds = work * len(cells) / len(sampled)
     seconds /= min(jobs, len(cells))

@@ -71,12 +71,12 @@ def check_problems(experiment: Experiment) -> None:
     if find_spec("h5py") is None:
         sentence = "record.problems needs h5py: pip install lavendersim[hdf5]"
         raise ConfigError([first.defect(_KEY, sentence)])
-    sentence = next(_untellable(experiment), "")
+    sentence = next(_undumpable(experiment), "")
     if sentence:
         raise ConfigError([first.defect(_KEY, sentence)])
 
 
-def _untellable(experiment: Experiment) -> Iterator[str]:
+def _undumpable(experiment: Experiment) -> Iterator[str]:
     for cell in experiment.cells():
         plan = plan_of_cell(cell)
         for name in _OF_NO_FILE:

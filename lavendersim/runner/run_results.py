@@ -196,7 +196,7 @@ def _verdict_of(row: Mapping[str, Any]) -> Verdict:
         float(row["measured"]),
         row["expected"],
         row["tolerance"],
-        said=row["message"],
+        own_message=row["message"],
         path=row.get("path", ""),
         follows=row.get("follows", False),
         margin=float(row.get("margin", "nan")),  # older versions wrote none

@@ -164,8 +164,8 @@ def _made_alone(pair: CaseAndSolver, make: Callable[[CaseAndSolver], Entry]) -> 
         try:
             yield pool.submit(make, pair).result()
         except BrokenProcessPool:
-            said = "its process ended without a word"
-            yield without_run(pair.case.name, pair.solver, DIED, said)
+            reason = "its process ended without a word"
+            yield without_run(pair.case.name, pair.solver, DIED, reason)
 
 
 def _name(path: Path) -> str:

@@ -1,6 +1,6 @@
 """What stands beside the time of a step: its contacts and its iterations, as the log has them.
 
-An engine that does not tell one of them has no such column; it is None then, which is no zero.
+An engine that does not report one of them has no such column; it is None then, which is no zero.
 """
 
 from __future__ import annotations

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 from lavendersim.cell import CellBody
 from lavendersim.cell.mixing import mixed
+from lavendersim.engine.effects import PairFacts
 
-from .classes import RowPair, class_of, ordered
+from .classes import class_of, ordered
 from .colliders import colliders
 
 
-def candidate_pairs(bodies: Sequence[CellBody]) -> list[RowPair]:
+def candidate_pairs(bodies: Sequence[CellBody]) -> list[PairFacts[int]]:
     """Return every pair of rows of which one moves, in the order of the rows; for small scenes."""
     rows = colliders(bodies)
     classes = [class_of(row) for row in rows]
@@ -23,5 +24,5 @@ def candidate_pairs(bodies: Sequence[CellBody]) -> list[RowPair]:
                 continue
             swap, name = ordered((one.kind, other.kind))
             a, b = (j, i) if swap else (i, j)
-            pairs.append(RowPair(a, b, name, mixed(one.surface, other.surface)))
+            pairs.append(PairFacts(a, b, mixed(one.surface, other.surface), name))
     return pairs

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from lavendersim.cell import Surface
 from lavendersim.cell.mixing import mixed
 from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.effects import PairFacts
 from lavendersim.geometry.bodies import is_movable
 
 from .colliders import Collider
@@ -35,16 +36,6 @@ class RowClass(NamedTuple):
     def touches(self, other: RowClass) -> bool:
         """Whether rows of the two classes may touch: one of them moves, both have a surface."""
         return (self.movable or other.movable) and "compound" not in (self.kind, other.kind)
-
-
-class RowPair(NamedTuple):
-    """Two rows that may touch, in the order that the kernel of their shape pair takes them."""
-
-    a: int
-    b: int
-    shape_pair: str
-    surface: Surface  # mixed
-    row_pairs: int = 1  # how many pairs of rows it stands for, of which it is the first
 
 
 def class_of(row: Collider) -> RowClass:
@@ -87,9 +78,10 @@ def _count_joined(
     )
 
 
-def class_pairs(rows: Sequence[Collider], joined: Joined = NOTHING_JOINED) -> list[RowPair]:
+def class_pairs(rows: Sequence[Collider], joined: Joined = NOTHING_JOINED) -> list[PairFacts[int]]:
     """Return every pair of classes of which rows may touch, in the order of their first rows.
 
+    Each under the first two rows, in the order that the kernel of their shape pair takes them.
     Parts of one body do not touch each other; `row_pairs` counts theirs too.
     """
     classes, members = classes_of(rows)
@@ -118,5 +110,5 @@ def class_pairs(rows: Sequence[Collider], joined: Joined = NOTHING_JOINED) -> li
             swap, name = ordered((rows[a].kind, rows[b].kind))
             if swap:
                 a, b = b, a
-            found.append(RowPair(a, b, name, mixed(one.surface, other.surface), count))
+            found.append(PairFacts(a, b, mixed(one.surface, other.surface), name, count))
     return sorted(found, key=lambda pair: sorted((pair.a, pair.b)))

@@ -13,8 +13,8 @@ from inspect import cleandoc
 from pathlib import Path
 
 from lavendersim.engine.effects import EFFECTS, Column, Effect
-from lavendersim.engine.effects.effect import RowTerms
 from lavendersim.engine.effects.keys import Key
+from lavendersim.engine.terms import RowTerms, StepTerms
 
 INTRODUCTION = """\
 # Effects
@@ -44,6 +44,9 @@ def _section(effect: Effect) -> Iterator[str]:
     terms = [term.name for term in fields(RowTerms) if getattr(effect.row, term.name)]
     if terms:
         yield f"Brings to contacts' rows the term {', '.join(f'`{term}`' for term in terms)}.\n"
+    step = [term.name for term in fields(StepTerms) if getattr(effect.step, term.name)]
+    if step:
+        yield f"Brings to steps the term {', '.join(f'`{term}`' for term in step)}.\n"
     if effect.chosen_by:
         yield f"Chosen by `{effect.chosen_by.section}.{effect.chosen_by.key}`.\n"
     keys: list[tuple[str, Key]] = [

@@ -22,7 +22,9 @@ from lavendersim.cell import (
     CellTimestep,
     CellTriggeredEvent,
 )
+from lavendersim.engine.effects import has_hook
 from lavendersim.engine.engine import Engine
+from lavendersim.engine.step_terms import step_terms
 from lavendersim.quantities.quantity import Vector3
 from lavendersim.quantities.scalars import exact
 
@@ -62,7 +64,7 @@ class EventQueue:
         """Apply every change that is due after `done` steps; those of triggers come last."""
         while self._pending and self._pending[0].after <= done:
             self._pending.pop(0).apply()
-        if self._triggered and self._engine.spec.has("triggers"):
+        if self._triggered and has_hook(self._engine.spec, "meet_triggers"):
             for k in np.flatnonzero(self._engine.state.triggers["met"]):
                 if (apply := self._triggered.pop(int(k), None)) is not None:
                     apply()
@@ -108,7 +110,7 @@ class EventQueue:
         return partial(self._of_bodies.apply, event)
 
     def _force_changes(self, forces: Sequence[CellForce]) -> Iterator[Change]:
-        if not self._engine.spec.has("external_force"):
+        if "fx" not in (self._engine.bodies.dtype.names or ()):
             return
         for force in forces:
             if not force.constant_at_centre:
@@ -156,7 +158,7 @@ def write_velocity(
     row = engine.velocities[index]
     if velocity is not None:
         row["vx"], row["vy"], row["vz"] = velocity
-    if angular_velocity is not None and engine.spec.has("rotation"):
+    if angular_velocity is not None and step_terms(engine.spec).turns:
         row["wx"], row["wy"], row["wz"] = angular_velocity
 
 
@@ -185,7 +187,7 @@ class BodyEvents:
         body = engine.bodies[index]
         if event.scale_mass is not None:
             body["inv_m"] /= event.scale_mass
-            if engine.spec.has("rotation"):
+            if step_terms(engine.spec).turns:
                 for axis in "xyz":
                     body[f"inv_i{axis}"] /= event.scale_mass
         write_velocity(engine, index, event.velocity, event.angular_velocity)
@@ -210,7 +212,7 @@ class BodyEvents:
         for record, row in zip(engine.bodies, rows, strict=False):  # ends of ropes have none
             if row.owner == index:
                 fill_effects(record, row.body)
-        if engine.spec.has("broad_phase"):
+        if has_hook(engine.spec, "find_pairs"):
             list_materials(engine.bodies, rows, scene.classes, index)
             engine.list_pairs_anew()
         else:

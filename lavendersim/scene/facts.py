@@ -23,7 +23,7 @@ from lavendersim.engine.effects.rope import turned as turned_by_ropes
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import bounding_radius
 
-from .classes import RowPair, class_pairs
+from .classes import class_pairs
 from .colliders import colliders, parts_of
 from .joints import facts_of_joints, joined_bodies
 from .ropes import facts_of_ropes
@@ -76,7 +76,7 @@ def _least_size(shape: CellShape) -> float:
     return min(sizes) if sizes else bounding_radius(shape)
 
 
-def _pairs_over_time(config: CellConfig) -> tuple[list[RowPair], int]:
+def _pairs_over_time(config: CellConfig) -> tuple[list[PairFacts[int]], int]:
     """Return the pairs of classes of all stages, each once; and how many pairs of rows may touch.
 
     No event lets bodies touch that could not before: the number is that of any stage.
@@ -100,16 +100,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
     return Facts(
         bodies=tuple(_body_facts(config)),
         pairs=(
-            *(
-                PairFacts(
-                    a=names[owners[pair.a]],
-                    b=names[owners[pair.b]],
-                    shape_pair=pair.shape_pair,
-                    row_pairs=pair.row_pairs,
-                    surface=pair.surface,
-                )
-                for pair in pairs
-            ),
+            *(PairFacts(names[owners[pair.a]], names[owners[pair.b]], *pair[2:]) for pair in pairs),
             *ropes,
             *joints,
         ),

@@ -26,6 +26,7 @@ from lavendersim.engine.effects.joint_models import (
 )
 from lavendersim.engine.record_layout import allocate_pairs
 from lavendersim.engine.records import ROPE_END
+from lavendersim.engine.row_terms import row_terms
 from lavendersim.engine.spec import Spec
 from lavendersim.geometry.quaternions import from_axes, inverse, product
 from lavendersim.geometry.rotations import frame_along, rotation_matrix
@@ -49,7 +50,7 @@ def joined_bodies(scene: CellScene) -> frozenset[tuple[int, int]]:
     )
 
 
-def facts_of_joints(scene: CellScene) -> Iterator[PairFacts]:
+def facts_of_joints(scene: CellScene) -> Iterator[PairFacts[str]]:
     """Yield each joint as a pair, of as many rows as it has."""
     off_centre = {*turned_by_joints(scene)}
     for one in holding(scene).values():
@@ -75,7 +76,7 @@ def facts_of_joints(scene: CellScene) -> Iterator[PairFacts]:
 
 def with_joint_ends(spec: Spec, bodies: np.ndarray, config: CellConfig) -> np.ndarray:
     """Return the body table with the ends of joints behind it, in the order of their pairs."""
-    if not spec.has("joint"):
+    if not row_terms(spec).bilateral:
         return bodies
     names, joints = list(config.scene.bodies), list(holding(config.scene).values())
     places = [sorted(names.index(body) for body in one.between) for one in joints]
@@ -179,8 +180,8 @@ def _points(spec: Spec, joint: Joint) -> list[int]:
 
 
 def _all_rows(spec: Spec, joint: Joint) -> tuple[RowOfJoint, ...]:
-    stops = joint.stop_rows if spec.has("joint_stop") else ()
-    return (*joint.rows, *stops, *(joint.motor_row if spec.has("motor") else ()))
+    stops = joint.stop_rows if row_terms(spec).stopped else ()
+    return (*joint.rows, *stops, *(joint.motor_row if row_terms(spec).bounded else ()))
 
 
 def _unit(direction: Vector3) -> np.ndarray:
@@ -202,7 +203,7 @@ def with_joints(
     spec: Spec, pairs: np.ndarray, bodies: np.ndarray, first: int, config: CellConfig
 ) -> np.ndarray:
     """Return the table of pairs with those of joints before it; first: row of the first end."""
-    if not spec.has("joint") or first == len(bodies):
+    if not row_terms(spec).bilateral or first == len(bodies):
         return pairs
     joints_by_number = list(holding(config.scene).values())
     table_rows: list[tuple[int, int, int]] = []

@@ -16,7 +16,7 @@ from lavendersim.cell.mixing import mixed
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.broad.broad_phase import template_dtype
 from lavendersim.engine.collide.rope import ROPE
-from lavendersim.engine.effects import surface_fields
+from lavendersim.engine.effects import has_hook, surface_fields
 from lavendersim.engine.record_layout import allocate_pairs
 from lavendersim.engine.removal import NO_PAIR
 from lavendersim.engine.spec import Spec
@@ -58,7 +58,7 @@ def pair_tables(
     later: bodies as events make them; their classes have templates, too. joined: pairs of bodies
     that do not touch; a broad phase knows them by the rows of joints.
     """
-    if spec.has("broad_phase"):
+    if has_hook(spec, "find_pairs"):
         classes, bodies["material"][: len(rows)] = classes_of(rows)
         of_later = (class_of(row) for row in colliders(list(later)))
         every = tuple(dict.fromkeys([*classes, *of_later]))

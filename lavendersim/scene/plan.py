@@ -223,9 +223,9 @@ def _reasons(plans: list[Plan], name: str, every: CellNames) -> Reasons:
     """
     on = any(plan.decided(name).on for plan in plans)
     agreeing = [plan for plan in plans if plan.decided(name).on == on]
-    telling = [plan for plan in agreeing if (name in plan.forced) != on]
+    deciding = [plan for plan in agreeing if (name in plan.forced) != on]
     reasons: dict[str, list[CellNames]] = {}
-    for plan in telling or agreeing:
+    for plan in deciding or agreeing:
         reasons.setdefault(plan.decided(name).reason, []).append(plan.cells)
     return {reason: _together(parts, every) for reason, parts in reasons.items()}
 

@@ -15,6 +15,7 @@ from lavendersim.engine.effects import PairFacts
 from lavendersim.engine.effects.rope import Rope, pulling, turned
 from lavendersim.engine.record_layout import allocate_pairs
 from lavendersim.engine.records import ROPE_END
+from lavendersim.engine.row_terms import row_terms
 from lavendersim.engine.spec import Spec
 from lavendersim.geometry.rotations import rotation_matrix
 
@@ -27,7 +28,7 @@ def surface_of(rope: Rope) -> Surface:
     return Surface(friction=0.0, restitution=rope.restitution)
 
 
-def facts_of_ropes(scene: CellScene) -> Iterator[PairFacts]:
+def facts_of_ropes(scene: CellScene) -> Iterator[PairFacts[str]]:
     """Yield each rope as a pair that may touch."""
     off_centre = {*turned(scene)}
     for one in pulling(scene).values():
@@ -41,7 +42,7 @@ def facts_of_ropes(scene: CellScene) -> Iterator[PairFacts]:
 
 def with_ends(spec: Spec, bodies: np.ndarray, config: CellConfig) -> np.ndarray:
     """Return the body table with the ends of ropes behind it."""
-    if not spec.has("rope"):
+    if not row_terms(spec).taut:
         return bodies
     names, ropes = list(config.scene.bodies), pulling(config.scene)
     table = np.zeros(len(bodies) + 2 * len(ropes), bodies.dtype)
@@ -64,7 +65,7 @@ def with_ends(spec: Spec, bodies: np.ndarray, config: CellConfig) -> np.ndarray:
 
 def with_ropes(spec: Spec, pairs: np.ndarray, bodies: np.ndarray, scene: CellScene) -> np.ndarray:
     """Return the table of pairs with those of ropes before it; bodies: see `with_ends`."""
-    if not spec.has("rope"):
+    if not row_terms(spec).taut:
         return pairs
     ends = np.flatnonzero(bodies["shape"] == ROPE_END)
     ropes = allocate_pairs(spec, len(ends) // 2)

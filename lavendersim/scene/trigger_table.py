@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from lavendersim.cell import CellConfig
+from lavendersim.engine.effects import has_hook
 from lavendersim.engine.effects.triggers import CONDITIONS
 from lavendersim.engine.record_layout import allocate_triggers
 from lavendersim.engine.spec import Spec
@@ -15,7 +16,7 @@ def trigger_table(config: CellConfig, spec: Spec) -> Any:
 
     An engine that has them may run a cell that has none.
     """
-    if not spec.has("triggers"):
+    if not has_hook(spec, "meet_triggers"):
         return ()
     places = {name: row for row, name in enumerate(config.scene.bodies)}
     records = allocate_triggers(len(config.triggered))

@@ -40,7 +40,7 @@ def absent_table(why: str) -> NDArray[Any]:
 
 
 class TableWithout(np.ndarray[Any, Any]):
-    """A table whose engine does not tell some columns. NotReportedError where one is asked for."""
+    """A table whose engine does not report some columns; NotReportedError for one of them."""
 
     why: Mapping[str, str] = MappingProxyType({})  # by column
 

@@ -27,7 +27,13 @@ from lavendersim.trace.index import ChunkContent, damage
 from lavendersim.trace.limits import clock_of, names_of, reasons_of
 from lavendersim.trace.positions import Positions
 from lavendersim.trace.recorded import KEYS, RECORDED, is_recorded, partly_recorded
-from lavendersim.trace.schema import FORMAT, RESIDUAL_COLUMNS, STEP_COLUMNS, Column
+from lavendersim.trace.schema import (
+    FORMAT,
+    FORMER_NOT_REPORTED,
+    RESIDUAL_COLUMNS,
+    STEP_COLUMNS,
+    Column,
+)
 from lavendersim.trace.source import Source
 from lavendersim.trace.streams import COLUMNS
 from lavendersim.trace.whole import INTERRUPTED
@@ -35,8 +41,8 @@ from lavendersim.trace.writer import (
     ABSENT,
     DESCRIPTION,
     ENDING,
+    NOT_REPORTED_COLUMNS,
     TIMESTEP_CHANGES,
-    UNTOLD,
 )
 
 if TYPE_CHECKING:
@@ -128,7 +134,7 @@ class Trace:
         """One row per logged step: the file's columns, and `time` [s]."""
         with damage(self.path, "/step"):
             step = decode.join(self.steps_in_parts(), decode.step_columns(self.step_columns))
-        return table_without(step, self._untold("/step"))
+        return table_without(step, self._not_reported("/step"))
 
     @property
     def step_columns(self) -> tuple[Column, ...]:
@@ -242,7 +248,7 @@ class Trace:
         """
         if "/contacts" in self.absent:
             return absent_table(self.why_not("/contacts"))
-        return table_without(self.recorded_contact, self._untold("/contacts"))
+        return table_without(self.recorded_contact, self._not_reported("/contacts"))
 
     @cached_property
     def recorded_contact(self) -> NDArray[Any]:
@@ -263,19 +269,19 @@ class Trace:
         """
         if "/contacts" in self.absent:
             return
-        untold = self._untold("/contacts")
+        not_reported = self._not_reported("/contacts")
         if "recorded_contact" in self.__dict__:  # read already
-            yield table_without(self.recorded_contact, untold)
+            yield table_without(self.recorded_contact, not_reported)
             return
         if self._kept is not None:
-            yield from (table_without(part, untold) for part in self._kept)
+            yield from (table_without(part, not_reported) for part in self._kept)
             return
         kept: list[NDArray[Any]] = []
         size = 0
         for part in self.recorded_contacts_in_parts():
             size += part.nbytes
             kept = [*kept, part] if size <= KEPT_BYTES else []
-            yield table_without(part, untold)
+            yield table_without(part, not_reported)
         if size <= KEPT_BYTES:
             self._kept = kept
 
@@ -355,11 +361,13 @@ class Trace:
         met = met_after(self.steps_in_parts()) if triggered else {}
         return happened(self.config.events, triggered, met, self.clock)
 
-    def _untold(self, topic: str) -> dict[str, str]:
-        """Return the columns of a topic that the engine does not tell, with sentences."""
+    def _not_reported(self, topic: str) -> dict[str, str]:
+        """Return the columns of a topic that the engine does not report, with sentences."""
+        keys = NOT_REPORTED_COLUMNS, FORMER_NOT_REPORTED
+        reasons = next((self.metadata[key] for key in keys if key in self.metadata), {})
         return {
             name.removeprefix(f"{topic}."): f"this log has no {name}: {why}"
-            for name, why in self.metadata.get(UNTOLD, {}).items()
+            for name, why in reasons.items()
             if name.startswith(f"{topic}.")
         }
 

@@ -55,6 +55,7 @@ class Column(NamedTuple):
     meaning: str
 
 
+FORMER_NOT_REPORTED = "untold"  # metadata of older logs: `writer.NOT_REPORTED_COLUMNS`
 FORMER_NAMES = {"unsolved": "not_converged"}  # of columns in older logs, and their names now
 OF_THE_MESSAGE = "step"  # a row of a contact or a sweep has the number of its step there
 STEP_COLUMNS = tuple(

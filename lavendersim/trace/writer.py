@@ -48,7 +48,8 @@ KEPT_BYTES: Final = 256 * 1024 * 1024
 
 AS_WRITTEN, RESOLVED = "config.yaml", "resolved.json"  # attachments
 DESCRIPTION, ENDING = "trace", "lavender"  # metadata written first and last
-UNTOLD = "untold"  # metadata of columns that another engine does not tell: /topic.column -> why
+# Metadata of columns that another engine does not report: /topic.column -> why.
+NOT_REPORTED_COLUMNS: Final = "not_reported"
 ABSENT = "absent"  # of the description: topic -> why the log does without it
 TIMESTEP_CHANGES = "timestep_changes"  # and [steps done, timestep] of each; where there are any
 

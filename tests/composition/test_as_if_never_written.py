@@ -125,13 +125,16 @@ def as_it_is() -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "effects", [("drag",), ("contact_spring", "compliance")], ids=["drag", "compliance"]
+    ("effects", "elsewhere"),
+    [(("drag",), False), (("contact_spring", "compliance"), True)],
+    ids=["drag", "compliance"],
 )
 def test_a_pruned_effect_leaves_no_instruction(
-    effects: tuple[str, ...], as_it_is: list[str], tmp_path: Path
+    effects: tuple[str, ...], elsewhere: bool, as_it_is: list[str], tmp_path: Path
 ) -> None:
+    """elsewhere: whether files that are not the effect's have branches of what it alone brings."""
     without = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "lavendersim", tmp_path / "lavendersim", ignore=without)
     for effect in effects:
-        assert cut_out(tmp_path / "lavendersim/engine", effect) > 0
+        assert (cut_out(tmp_path / "lavendersim/engine", effect) > 0) == elsewhere
     assert instructions(tmp_path) == as_it_is

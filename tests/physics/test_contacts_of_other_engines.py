@@ -1,4 +1,4 @@
-"""What engines tell of contacts, by hand: impulses on a body are what its momentum changed by.
+"""What engines report of contacts, by hand: impulses on a body are what its momentum changed by.
 
 The sign convention is lavender's: a normal points from A to B, impulses are those on B.
 """

@@ -107,7 +107,7 @@ def test_a_log_has_the_columns_of_ours_and_reasons_for_the_others(tmp_path: Path
     assert log.pose.shape == (121, 2, 7)
     assert log.velocity.shape == (121, 2, 6)
     assert log.metadata["engine"]["name"] == "mujoco"
-    with pytest.raises(NotReportedError, match=r"no /step\.residual: MuJoCo does not tell it"):
+    with pytest.raises(NotReportedError, match=r"no /step\.residual: MuJoCo does not report it"):
         log.step["residual"]
     with pytest.raises(NotReportedError, match=r"no /contacts\.approach_velocity: MuJoCo"):
         log.contact["approach_velocity"]
@@ -144,7 +144,7 @@ def test_what_it_does_not_tell_is_not_judged_and_never_passed(tmp_path: Path) ->
 
 
 @needs("mujoco")
-def test_penetration_is_that_of_poses_whatever_the_engine_tells(tmp_path: Path) -> None:
+def test_penetration_is_that_of_poses_whatever_the_engine_reports(tmp_path: Path) -> None:
     """A box that starts 10 mm inside the floor, by our geometry."""
     text = BOX.replace("position: [0, 0, 0.1]", "position: [0, 0, 0.09]")
     finished = run_by(text, "mujoco", tmp_path, "always: {stop: false, energy: none}")

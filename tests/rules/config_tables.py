@@ -14,7 +14,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from typing import Any, get_args
+from types import UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
 
 from markdown_tables import escaped, markdown
 from pydantic import BaseModel
@@ -22,9 +23,10 @@ from pydantic.fields import FieldInfo
 
 from lavendersim.cell.numerics import Numerics
 from lavendersim.engine.effects import SCENE_KEYS
-from lavendersim.experiment.checks.annotations import alternatives, fields, is_model, kinds
+from lavendersim.experiment.checks.messages import fields
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.resolve.presets import PRESETS
+from lavendersim.quantities.chosen_kind import kinds
 from lavendersim.quantities.scalars import label
 
 # Keys that effects declare; their own keys follow in the same table.
@@ -50,12 +52,30 @@ def with_key_tables(text: str) -> str:
     return _TABLE.sub(table, text)
 
 
+def alternatives(annotation: Any) -> list[Any]:
+    """Return the members of a union, or the type alone, without their metadata."""
+    while get_origin(annotation) is Annotated:
+        annotation = get_args(annotation)[0]
+    if get_origin(annotation) in (Union, UnionType):
+        return [one for member in get_args(annotation) for one in alternatives(member)]
+    return [annotation]
+
+
+def models_of(annotation: Any) -> list[type[BaseModel]]:
+    """Return the models among the members of a union."""
+    return [
+        member
+        for member in alternatives(annotation)
+        if isinstance(member, type) and issubclass(member, BaseModel)
+    ]
+
+
 def models_below(annotation: Any) -> list[type[BaseModel]]:
     """Return every model that a config of this type may hold, each once."""
     found: dict[type[BaseModel], None] = {}
     for member in alternatives(annotation):
         parts = get_args(member)
-        if is_model(member):
+        if models_of(member):
             found[member] = None
             parts = tuple(info.annotation for info in member.model_fields.values())
         for part in parts:

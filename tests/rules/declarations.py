@@ -10,6 +10,7 @@ DECLARATIONS = {
     "cell/numerics.py": "fields of a resolved config",
     "cell/shapes/compound.py": "fields of a resolved config",
     "cell/shapes/plane.py": "fields of a resolved config",
+    "engine/terms.py": "terms that effects declare",
     "engine/solvers/catalogue.py": "a list of declarations",
     "figures/specs/base.py": "fields of a panel's config",
     "figures/specs/catalogue.py": "a union of models",

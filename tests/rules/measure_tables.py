@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterator
 from importlib import import_module
 from typing import Any, Final
 
+from config_tables import models_of
 from markdown_tables import escaped
 from pydantic import BaseModel
 
-from lavendersim.experiment.checks.annotations import models_of
 from lavendersim.measures.closed_forms import FORMS
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.base import Measure

@@ -12,12 +12,13 @@ from sources import ROOT
 
 from lavendersim.cell import Numerics
 from lavendersim.engine.effects import SCENE_KEYS
-from lavendersim.experiment.checks.annotations import fields, kinds
+from lavendersim.experiment.checks.messages import fields
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.resolve.presets import PRESETS
 from lavendersim.figures.specs.catalogue import FigureSpec
 from lavendersim.measures.specs.catalogue import MeasureSpec
 from lavendersim.measures.specs.expectation import ExpectSpec
+from lavendersim.quantities.chosen_kind import kinds
 from lavendersim.quantities.scalars import label, resolve
 
 TEXT = (ROOT / "docs/config.md").read_text(encoding="utf-8")

@@ -118,7 +118,8 @@ PADDING = '''\
 """Padding: a regularised row gamma = c/dt^2 of a compliance c, without any key of surfaces."""
 
 from .decision import Decision
-from .effect import Effect, Fields, Hooks, RowTerms, kernel
+from .effect import Effect, Fields, Hooks, kernel
+from ..terms import RowTerms
 
 COMPLIANCE = 1e-4  # [m/N]
 

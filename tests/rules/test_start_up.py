@@ -17,6 +17,7 @@ from lavendersim.engine.effects import NAMES
 DECLARATIONS = {
     *("lavendersim.engine", "lavendersim.engine.solvers"),
     *("lavendersim.engine.records", "lavendersim.engine.spec", "lavendersim.engine.effects"),
+    *("lavendersim.engine.terms", "lavendersim.engine.step_terms"),
     *(
         f"lavendersim.engine.effects.{part}"
         for part in ("decision", "effect", "joint_models", "keys", "time_functions")

@@ -28,3 +28,10 @@ def test_exit_codes_are_those_of_docs() -> None:
         **{"LavenderError": 4, "TraceError": 3, "OtherVersionError": 3},
         **dict.fromkeys(asked, 2),
     }
+
+
+def test_reasons_of_older_logs_are_known_as_well() -> None:
+    for sentence in ("no /step.sweeps: DART does not report it", "DART does not tell it"):
+        assert errors.is_not_reported(sentence)
+        assert isinstance(errors.unanswerable(sentence), errors.NotReportedError)
+    assert not errors.is_not_reported("the log has no contacts")

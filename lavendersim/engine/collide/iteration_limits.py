@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from ..compile import inner, kernel, once
 from ..effects import has_hook
+from ..row_terms import row_terms
 from ..spec import Spec
+from ..step_terms import step_terms
 from .pairs import SHAPE_PAIRS, box_box, convex
 from .shapes import has_curved
 from .swept import needs_separation
@@ -22,8 +24,8 @@ def has_epa(spec: Spec) -> bool:
 
 def has_gjk(spec: Spec) -> bool:
     """Whether distances of convex bodies are looked for by GJK."""
-    ahead = spec.has("speculative") and spec.collides(box_box.PAIR.name)
-    return has_epa(spec) or ahead or (spec.has("fast_bodies") and needs_separation(spec))
+    ahead = step_terms(spec).ahead and spec.collides(box_box.PAIR.name)
+    return has_epa(spec) or ahead or (row_terms(spec).swept and needs_separation(spec))
 
 
 def has_ascent(spec: Spec) -> bool:
@@ -33,7 +35,7 @@ def has_ascent(spec: Spec) -> bool:
 
 def has_advance(spec: Spec) -> bool:
     """Whether fast bodies are moved to where they meet."""
-    return spec.has("fast_bodies")
+    return row_terms(spec).swept
 
 
 def has_limits(spec: Spec) -> bool:

@@ -8,11 +8,12 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile import inner, kernel
-from ..effects import made_once
+from ..effects import has_hook, made_once
 from ..overlooked_points import make_note_left_out
 from ..records import TOUCHING
 from ..row_terms import row_terms
 from ..spec import Spec
+from ..step_terms import step_terms
 from ..vectors import Vec3, dot
 from .joint import is_couple, is_motor, is_stop, make_joint, put_ends
 from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
@@ -35,7 +36,7 @@ def displacement(of_a, of_b, share, dt):
 def make_manifold(spec: Spec, names: tuple[str, ...]):
     """Return `kernel(kind, a, b, margin, scratch) -> count`: these pairs, ropes and joints."""
     others = _make_manifold_of_ropes(spec, names)
-    if not spec.has("joint"):
+    if not row_terms(spec).bilateral:
         return others
     joint = make_joint(spec)
 
@@ -49,7 +50,7 @@ def make_manifold(spec: Spec, names: tuple[str, ...]):
 
 def _make_manifold_of_ropes(spec: Spec, names: tuple[str, ...]):
     of_shapes = _make_manifold_of_shapes(spec, names)
-    if not spec.has("rope"):
+    if not row_terms(spec).taut:
         return of_shapes
     rope = make_rope(spec)
 
@@ -96,16 +97,16 @@ def make(spec: Spec):
     move make none; with `sleeping` there are such pairs.
     """
     manifold = make_manifold(spec, spec.shape_pairs)
-    speculative = spec.has("speculative")
-    sweeps = spec.has("fast_bodies")
+    speculative = step_terms(spec).ahead
+    sweeps = row_terms(spec).swept
     is_fast: Any = make_is_fast(spec) if sweeps else None
     swept_manifold: Any = make_swept_manifold(spec, manifold) if sweeps else None
-    share = 0.5 if spec.has("midpoint") else 1.0
-    compound, ropes = spec.has("compound"), spec.has("rope")
+    share = 0.5 if step_terms(spec).mean_flight else 1.0
+    compound, ropes = has_hook(spec, "place_parts"), row_terms(spec).taut
     bilateral, levers = row_terms(spec).bilateral, row_terms(spec).levers
     bounded, stopped = row_terms(spec).bounded, row_terms(spec).stopped
     sleeps, still = made_once(spec, "is_still")
-    overlooks = spec.has("overlooked_points")
+    overlooks = step_terms(spec).overlooks
     note_left_out: Any = make_note_left_out(spec) if overlooks else None
 
     def narrow_phase(state, listed, workspace, dt):

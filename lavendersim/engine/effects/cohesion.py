@@ -13,12 +13,14 @@ TOUCHING). Of two surfaces F is the geometric mean: a surface without cohesion s
 
 from ..records import TOUCHING
 from ..spec import Spec
+from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Balance, Column, Effect, Fields, Hooks, Kernel, kernel
 from .keys import FORCE, SurfaceKey, geometric_mean
 
 
-def _reason(pair: PairFacts) -> str:
+def _reason(pair: PairFacts[str]) -> str:
     force = pair.surface.cohesion
     return f"cohesion {force:g} N a contact" if force > 0.0 else ""
 
@@ -60,7 +62,7 @@ def make_preload(spec: Spec) -> Kernel:
     from ..integrate import keeps_motion
 
     apply_impulse, keeps = make_apply_impulse(spec), keeps_motion(spec)
-    forced = spec.has("impact_time") or spec.has("midpoint")
+    forced = step_terms(spec).timed_impacts or step_terms(spec).mean_flight
 
     def draw_together(contact, velocities, motion):
         p = contact.adhesion
@@ -103,6 +105,7 @@ EFFECT = Effect(
             mix=geometric_mean,
         ),
     ),
+    step=StepTerms(bounces_vary=True),
     fields=Fields(
         pair=[("cohesion", "f8")],  # F [N]
         contact=[("adhesion", "f8"), ("loaded", "i8")],  # F dt where it is closed [N s]

@@ -4,12 +4,13 @@ c is the sum over the two surfaces (in series) [m/N]; divided by dt^2, not dt: t
 velocities and its unknown an impulse, F = lambda/dt and d = c F.
 """
 
+from ..terms import RowTerms, StepTerms
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Effect, Fields, Hooks, RowTerms, kernel
+from .effect import Effect, Fields, Hooks, kernel
 from .keys import COMPLIANCE, SurfaceKey, in_series
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     c = pair.surface.compliance
     return f"compliance {c:g} m/N" if c > 0.0 else ""
 
@@ -35,6 +36,7 @@ EFFECT = Effect(
     decide=decide,
     per="contact",
     row=RowTerms(compliant=True),
+    step=StepTerms(bounces_vary=True),
     surface_keys=(
         SurfaceKey(
             name="compliance",

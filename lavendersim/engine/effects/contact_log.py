@@ -5,6 +5,7 @@ What an effect adds to a contact it logs itself: its `contact_columns` and its h
 
 from ..records import TOUCHING
 from ..spec import Spec
+from ..step_terms import step_terms
 from .decision import Decision, Facts
 from .effect import Column, Derived, Effect, Hooks, Kernel, kernel
 
@@ -32,7 +33,7 @@ def make(spec: Spec, loggers):
     from ..violations import make_forget, make_watch_coulomb, make_watch_signorini
     from . import effects_of
 
-    speculative = spec.has("speculative")
+    speculative = step_terms(spec).ahead
     loads = any(effect.hooks.preload for effect in effects_of(spec))
     friction, bilateral = row_terms(spec).frictional, row_terms(spec).bilateral
     bounded = row_terms(spec).bounded

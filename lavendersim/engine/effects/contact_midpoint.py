@@ -20,8 +20,9 @@ from __future__ import annotations
 
 from ..records import Field
 from ..spec import Spec
+from ..terms import RowTerms, StepTerms
 from .decision import Decision, Facts
-from .effect import Choice, Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
+from .effect import Choice, Column, Effect, Fields, Hooks, Kernel, kernel
 
 
 def decide(facts: Facts) -> Decision:
@@ -37,7 +38,7 @@ def contact_fields(spec: Spec) -> list[Field]:
     """Return the columns of frictional and of swept contacts."""
     from ..row_terms import row_terms
 
-    swept = [("at_tx", "f8"), ("at_ty", "f8"), ("at_tz", "f8")] if spec.has("fast_bodies") else []
+    swept = [("at_tx", "f8"), ("at_ty", "f8"), ("at_tz", "f8")] if row_terms(spec).swept else []
     if not row_terms(spec).frictional:
         return swept
     torques = [("kept_psi_n", "f8"), ("kept_psi_1", "f8"), ("kept_psi_2", "f8")]
@@ -66,6 +67,7 @@ EFFECT = Effect(
     decide=decide,
     per="contact",
     row=RowTerms(shifted=True),
+    step=StepTerms(centred=True),
     chosen_by=Choice("integrator"),
     fields=Fields(
         contact=[

@@ -14,6 +14,8 @@ A contact with a spring has no impact, so its restitution has no effect, and it 
 
 from math import sqrt
 
+from ..step_terms import step_terms
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Balance, Choice, Column, Effect, Fields, Hooks, kernel
 from .keys import COEFFICIENT, SurfaceKey, larger
@@ -22,7 +24,7 @@ from .keys import COEFFICIENT, SurfaceKey, larger
 FAST = 4.0
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     c = pair.surface.compliance
     return f"a spring of {c:g} m/N" if c > 0.0 else ""
 
@@ -40,7 +42,7 @@ def decide(facts: Facts) -> Decision:
 
 def make_row(spec):
     """Return `kernel(contact, v, params)`: target and gamma; v: v_n as the step begins [m/s]."""
-    mean = spec.has("contact_midpoint")
+    mean = step_terms(spec).centred
 
     def spring_row(contact, v, params):
         dt, c = params.dt, contact.spring_compliance
@@ -66,7 +68,7 @@ def make_row(spec):
 def make(spec):
     """Return `kernel(contact, pair, params)`."""
     spring_row = make_row(spec)
-    mean = spec.has("contact_midpoint")
+    mean = step_terms(spec).centred
 
     def spring(contact, pair, params):
         contact.spring_compliance = pair.compliance
@@ -85,7 +87,7 @@ def make_energy(spec):
     from ..contact import make_normal_velocity
 
     normal_velocity = make_normal_velocity(spec)
-    mean = spec.has("contact_midpoint")
+    mean = step_terms(spec).centred
 
     def spring_energy(contacts, count, velocities, params):
         total = 0.0
@@ -136,6 +138,7 @@ EFFECT = Effect(
             needs="compliance",
         ),
     ),
+    row=RowTerms(elastic=True),
     fields=Fields(
         pair=[("damping_ratio", "f8")],  # zeta of the pair [-]
         contact=[

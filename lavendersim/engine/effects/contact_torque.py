@@ -1,8 +1,9 @@
 """Contact torque: rows get levers r x n, and their effective mass its rotational part."""
 
 from ..records import LEVER
+from ..terms import RowTerms
 from .decision import Decision, Facts, named
-from .effect import Effect, Fields, RowTerms
+from .effect import Effect, Fields
 
 
 def decide(facts: Facts) -> Decision:

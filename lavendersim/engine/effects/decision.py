@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 MOST_PAIRS = 3  # in a sentence
 
@@ -35,15 +35,19 @@ class BodyFacts(NamedTuple):
         return (self.config, *self.later)
 
 
-class PairFacts(NamedTuple):
+Which = TypeVar("Which", str, int)
+
+
+class PairFacts(NamedTuple, Generic[Which]):
     """Two bodies that may touch, and what holds between their surfaces.
 
-    Bodies that are alike in shape, surface and movability share one entry, under the names of the
-    first of them: the number of entries does not grow with the number of bodies.
+    Predicates see them by name, the scene by the rows of its body table. Bodies that are alike in
+    shape, surface and movability share one entry, under the first of them: the number of entries
+    does not grow with the number of bodies.
     """
 
-    a: str
-    b: str
+    a: Which
+    b: Which
     surface: Any  # of the contact: the surface keys of the effects, mixed
     shape_pair: str = ""  # name of the manifold
     row_pairs: int = 1  # how many pairs it stands for
@@ -59,7 +63,7 @@ class Facts(NamedTuple):
     """A scene and its numerics, reduced to what decides which effects are required."""
 
     bodies: tuple[BodyFacts, ...]
-    pairs: tuple[PairFacts, ...]
+    pairs: tuple[PairFacts[str], ...]
     gravity: tuple[float, float, float]  # as the run begins
     stabilisation_gain: float
     projection: float
@@ -90,7 +94,7 @@ class Facts(NamedTuple):
     duration: float = 0.0  # [s]
 
 
-def meeting(facts: Facts) -> list[PairFacts]:
+def meeting(facts: Facts) -> list[PairFacts[str]]:
     """Return the pairs that may meet: not those of joints, which are never apart."""
     return [pair for pair in facts.pairs if pair.shape_pair != "joint"]
 
@@ -109,16 +113,16 @@ def named(names: list[str]) -> str:
     return f"{', '.join(names[:2])} and {len(names) - 2} more"
 
 
-def by_pair(pairs: Sequence[PairFacts], say: Callable[[PairFacts], str]) -> str:
+def by_pair(pairs: Sequence[PairFacts[str]], say: Callable[[PairFacts[str]], str]) -> str:
     """Say something of a few pairs of surfaces: `floor and ball: sliding 0.5; floor and box: none`.
 
     say: nothing for a pair of which there is nothing to say; such pairs come last.
     """
     texts = [(f"{pair.a} and {pair.b}", say(pair)) for pair in pairs]
-    telling = [f"{names}: {what}" for names, what in texts if what]
-    silent = [f"{names}: none" for names, what in texts if not what]
-    if len(telling) > MOST_PAIRS:
-        telling[MOST_PAIRS - 1 :] = [f"{len(telling) - MOST_PAIRS + 1} more pairs"]
-    if len(silent) > 1:
-        silent = [f"{len(silent)} other pairs: none"]
-    return "; ".join(telling + silent)
+    described = [f"{names}: {what}" for names, what in texts if what]
+    others = [f"{names}: none" for names, what in texts if not what]
+    if len(described) > MOST_PAIRS:
+        described[MOST_PAIRS - 1 :] = [f"{len(described) - MOST_PAIRS + 1} more pairs"]
+    if len(others) > 1:
+        others = [f"{len(others)} other pairs: none"]
+    return "; ".join(described + others)

@@ -21,6 +21,8 @@ from pydantic import Field as ModelField
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity
 
+from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, named
 from .effect import Balance, Effect, Fields, Hooks, Unlogged, kernel
 from .keys import BodyKey
@@ -59,7 +61,7 @@ def decide(facts: Facts) -> Decision:
 
 def make_start_step(spec):
     """Return `kernel(bodies, velocities)`: keep the velocities that a step begins with."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def keep_start(bodies, velocities):
         for i in range(bodies.shape[0]):
@@ -73,10 +75,10 @@ def make_start_step(spec):
 
 def make(spec):
     """Return `kernel(body, velocity, params)`."""
-    drag = _make_second_order(spec) if spec.has("midpoint") else _make_first_order(spec)
-    if not spec.has("impact_time"):
+    drag = _make_second_order(spec) if step_terms(spec).mean_flight else _make_first_order(spec)
+    if not step_terms(spec).timed_impacts:
         return drag
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def noted_drag(body, velocity, params):
         x, y, z = velocity.vx, velocity.vy, velocity.vz
@@ -97,7 +99,7 @@ def make_slowed_n(spec):
     """Return `kernel(contact, body_a, body_b) -> v_n` that drag adds in the step [m/s]."""
     from ..vectors import Vec3, cross, dot, minus, plus, position
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def slowed(body, x):
         v = Vec3(body.slowed_vx, body.slowed_vy, body.slowed_vz)
@@ -123,7 +125,7 @@ def make_slowed_n(spec):
 def _make_second_order(spec):
     from ..rotation import to_body, to_world
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def decayed(begin, driven, x):
         # What other forces alone lead from `begin` to, with a decay of x in the step.
@@ -162,7 +164,7 @@ def _make_second_order(spec):
 def _make_first_order(spec):
     from ..rotation import to_body, to_world
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def drag(body, velocity, params):
         dt = params.dt
@@ -189,7 +191,8 @@ def _make_first_order(spec):
 
 def contact_fields(spec):
     """Return what contacts have where impacts have a time."""
-    return [("slowed_n", "f8")] if spec.has("impact_time") else []  # v_n by drag in the step [m/s]
+    timed = step_terms(spec).timed_impacts
+    return [("slowed_n", "f8")] if timed else []  # v_n by drag in the step [m/s]
 
 
 EFFECT = Effect(
@@ -205,6 +208,7 @@ EFFECT = Effect(
             of_movable=True,
         ),
     ),
+    step=StepTerms(bounces_vary=True),
     balance=Balance(unlogged=Unlogged("momentum", "what the drag of {body} takes")),
     fields=Fields(
         body=[

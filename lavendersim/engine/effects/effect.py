@@ -10,12 +10,13 @@ Declarations load without numba: a maker imports what its kernel is made of when
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from dataclasses import fields as dataclass_fields
 from typing import Any, Final, Literal, NamedTuple
 
 from ..records import Field
 from ..spec import Spec
+from ..terms import RowTerms, StepTerms
 from .decision import Decision, Facts
 from .keys import BodyKey, SceneKey, SurfaceKey
 from .time_functions import Terms
@@ -135,6 +136,8 @@ class Hooks:
     project: Maker | None = None  # (system, motion, pseudo, solver's workspace, params) -> sweeps
     turn: Maker | None = None  # (body, velocity, dt) -> whether the turn has a solution
     turn_uneven: Maker | None = None  # the same for unequal principal inertias
+    turn_midway: Maker | None = None  # (body, start, m, lead, end, dt) -> whether a middle is found
+    turn_by_mean: Maker | None = None  # (body, velocity, x, y, z, dt): by the step's mean spin
     add_spin: Maker | None = None  # (body, velocity, x, y, z, twice_spent): jump of spin
     meet_triggers: Maker | None = None  # (state, log, counters) -> how many, at the end of a step
     update_sleeping: Maker | None = None  # at the end of a step, see `sleeping`
@@ -172,26 +175,6 @@ class Drive(NamedTuple):
     values: Mapping[str, Any]  # of the fields that the effect adds
 
 
-@dataclass(frozen=True, kw_only=True)
-class RowTerms:
-    """What contacts' rows are made of. Solvers ask for these terms, and never for an effect.
-
-    An effect that declares a term brings the fields it is written in; one that several bring stands
-    once. What an engine has of them: `row_terms.row_terms`.
-    """
-
-    frictional: bool = False  # rows of three, along n, t1 and t2: see `block`
-    frictionless: bool = False  # rows of a normal alone, beside those
-    compliant: bool = False  # gamma lambda_n adds to w_n: `gamma`, from 0 in each step [1/kg]
-    torsional: bool = False  # an angular impulse psi_n about n: see `spin_block` [N m s]
-    rolling: bool = False  # psi_1, psi_2 in the tangent plane [N m s]
-    levers: bool = False  # of rows of a normal: impulses turn bodies
-    bilateral: bool = False  # some of a normal have no cone: `bilateral` is 1, either sign [N s]
-    bounded: bool = False  # some of those, motors, have a largest impulse, `most`: see `motor`
-    stopped: bool = False  # some of a normal are stops of joints: `stop` is 1
-    shifted: bool = False  # surface_1, surface_2 add to the slip [m/s]
-
-
 class Choice(NamedTuple):
     """The key of a config that chooses an effect: a law, which no coefficient turns off."""
 
@@ -221,7 +204,8 @@ class Effect:
     moves: Callable[[Any], tuple[float, bool]] | None = (
         None  # a body: speed [m/s], whether it turns
     )
-    row: RowTerms = RowTerms()
+    row: RowTerms = field(default_factory=RowTerms)
+    step: StepTerms = field(default_factory=StepTerms)
     balance: Balance = Balance()
     study_only: str = ""  # of a deliberate error, what it does: every run that has it says so
     fields: Fields = Fields()

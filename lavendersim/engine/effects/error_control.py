@@ -21,6 +21,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..spec import Spec
+from ..terms import StepTerms
 from .decision import Decision, Facts
 from .effect import Choice, Column, Effect, Fields, Hooks, kernel
 
@@ -49,6 +50,7 @@ EFFECT = Effect(
     decide=decide,
     per="body",
     chosen_by=Choice("accuracy", examples=(1e-3, None)),
+    step=StepTerms(substeps=True),
     fields=Fields(
         parameters=[
             ("accuracy", "f8"),  # error that the run may have, relative [-]

@@ -21,11 +21,11 @@ from .effect import Column, Effect, Fields, Hooks, Kernel, kernel
 from .keys import SPEED, SurfaceKey, smaller_above_zero
 
 
-def _falls(pair: PairFacts) -> bool:
+def _falls(pair: PairFacts[str]) -> bool:
     return bool(pair.surface.restitution > 0.0 and pair.surface.yield_speed > 0.0)
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     speed = pair.surface.yield_speed
     return f"{pair.surface.restitution:g} falls above {speed:g} m/s" if _falls(pair) else ""
 

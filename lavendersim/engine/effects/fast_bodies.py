@@ -15,6 +15,7 @@ the start of a step does: up to m |g| dt times the speed in every bounce (`measu
 
 from math import hypot, inf, sqrt
 
+from ..terms import RowTerms
 from .decision import BodyFacts, Decision, Facts, meeting
 from .effect import Column, Effect, Fields, Hooks, kernel
 
@@ -139,6 +140,7 @@ EFFECT = Effect(
     decide=decide,
     per="body",
     needs=("speculative",),
+    row=RowTerms(swept=True),
     fields=Fields(
         contact=[
             # displacement of B from A across n until the impact [m]

@@ -7,12 +7,14 @@ a sweep needs both and nothing else of a body.
 """
 
 from ..spec import Spec
+from ..step_terms import step_terms
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Column, Derived, Effect, Fields, Hooks, Kernel, RowTerms, kernel
+from .effect import Column, Derived, Effect, Fields, Hooks, Kernel, kernel
 from .keys import COEFFICIENT, SurfaceKey, geometric_mean
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     if pair.surface.friction > 0.0:
         return f"sliding {pair.surface.friction:g}"
     return "resistance to turning acts in friction's frame" if pair.resists_turning else ""
@@ -56,7 +58,7 @@ def make_contact_row(spec):
     """Return `kernel(out, contact, va, vb)` that fills its columns of a contact."""
     from ..block import make_slip_velocity
 
-    slip_velocity, centred = make_slip_velocity(spec), spec.has("contact_midpoint")
+    slip_velocity, centred = make_slip_velocity(spec), step_terms(spec).centred
 
     def log_friction(out, contact, va, vb):
         out.impulse_t1, out.impulse_t2 = contact.lambda_1, contact.lambda_2

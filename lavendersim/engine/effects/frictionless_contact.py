@@ -7,11 +7,12 @@ bit.
 
 from ..records import Field
 from ..spec import Spec
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, named
-from .effect import Effect, Fields, RowTerms
+from .effect import Effect, Fields
 
 
-def is_frictionless(pair: PairFacts) -> bool:
+def is_frictionless(pair: PairFacts[str]) -> bool:
     """Whether contacts of the pair push along their normal alone."""
     return pair.surface.friction == 0.0 and not pair.resists_turning
 

@@ -9,6 +9,7 @@ found by Newton's method.
 
 from math import sqrt
 
+from ..terms import StepTerms
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Hooks, kernel
 
@@ -215,6 +216,7 @@ EFFECT = Effect(
     decide=decide,
     per="body",
     needs=("rotation",),
+    step=StepTerms(uneven=True),
     counts=("gyroscopic_not_converged",),
     step_columns=(
         Column(
@@ -225,5 +227,11 @@ EFFECT = Effect(
             when=acts_midway,
         ),
     ),
-    hooks=Hooks(turn_uneven=make, add_spin=make_jump, step_row=make_step_row),
+    hooks=Hooks(
+        turn_uneven=make,
+        turn_midway=make_turn_midway,
+        turn_by_mean=make_turn_by_mean,
+        add_spin=make_jump,
+        step_row=make_step_row,
+    ),
 )

@@ -24,6 +24,8 @@ from typing import Any
 
 from ..records import TOUCHING
 from ..spec import Spec
+from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Column, Effect, Fields, Hooks, kernel
 
@@ -106,10 +108,10 @@ def make_order(spec: Spec) -> Any:
     mark_impact, keep_present = make_mark_impact(spec), make_keep_present(spec)
     keep_motion = make_keep_motion(spec)
     edged = drop_flush is not None
-    turns = spec.has("rotation")
-    springs, ropes = spec.has("contact_spring"), spec.has("rope")
+    turns = step_terms(spec).turns
+    springs, ropes = row_terms(spec).elastic, row_terms(spec).taut
     bilateral, stopped = row_terms(spec).bilateral, row_terms(spec).stopped
-    rebounds = spec.has("restitution")
+    rebounds = step_terms(spec).rebounds
     work = REBOUND if rebounds else WORK
     stops, first_stop = made_once(spec, "first_stop")
 
@@ -258,6 +260,7 @@ EFFECT = Effect(
     per="contact",
     needs=("impact_time",),
     chosen_by=Choice("impacts"),
+    step=StepTerms(ordered_impacts=True),
     fields=Fields(
         body=[("ax", "f8"), ("ay", "f8"), ("az", "f8")],  # in the last part of a step [m/s^2]
         contact=[

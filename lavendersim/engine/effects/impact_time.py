@@ -16,6 +16,8 @@ from math import sqrt
 from typing import Any
 
 from ..records import TOUCHING
+from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Fields, Hooks, kernel
 
@@ -42,7 +44,7 @@ def make_foresee(spec):
     from ..row_terms import row_terms
     from . import has_hook, made_once
 
-    ordered, springs = spec.has("impact_order"), spec.has("contact_spring")
+    ordered, springs = step_terms(spec).ordered_impacts, row_terms(spec).elastic
     bilateral = row_terms(spec).bilateral
     falls, restitution_at = made_once(spec, "restitution_at")
     slows, repeats = has_hook(spec, "slowed_n"), bounces_repeat(spec)
@@ -147,7 +149,7 @@ def make_predict_impacts(spec):
 
     bilateral = row_terms(spec).bilateral
     share_impacts: Any = make_share_impacts(spec) if bilateral else None
-    foresee, springs = make_foresee(spec), spec.has("contact_spring")
+    foresee, springs = make_foresee(spec), row_terms(spec).elastic
     falls, _ = made_once(spec, "restitution_at")
     mark_carried = make_mark_carried(spec)
 
@@ -219,6 +221,7 @@ EFFECT = Effect(
     decide=decide,
     per="contact",
     chosen_by=Choice("impacts"),
+    step=StepTerms(timed_impacts=True),
     fields=Fields(
         contact=[
             ("dv_n", "f8"),  # change of v_n by forces in this step [m/s]

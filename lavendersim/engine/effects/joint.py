@@ -24,8 +24,10 @@ from typing import Any
 
 from ..records import Field
 from ..spec import Spec
+from ..step_terms import step_terms
+from ..terms import RowTerms
 from .decision import Decision, Facts, named
-from .effect import Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
+from .effect import Column, Effect, Fields, Hooks, Kernel, kernel
 from .joint_models import holding
 
 
@@ -93,7 +95,7 @@ def contact_fields(spec: Spec) -> list[Field]:
     """Return the levers of a row, where impulses turn bodies, and those of the step's start."""
     from ..row_terms import row_terms
 
-    centred = spec.has("contact_midpoint")
+    centred = step_terms(spec).centred
     fields = []
     if centred:
         # How fast its ends part as the step begins [m/s].

@@ -214,8 +214,8 @@ class SliderJoint(JointWithAxis):
     kind: Literal["slider"] = ModelField(description="`slider`")
     limits: Annotated[Limits, Vector(2, Quantity("m"))] | None = ModelField(
         default=None,
-        description="[m] least and greatest way of the second body of `between` along the first, "
-        "along `axis`, 0 as the run begins; where it stops nothing is thrown back",
+        description="[m] least and greatest displacement of the second body of `between` from the "
+        "first, along `axis`, 0 as the run begins; where it stops nothing is thrown back",
     )
     motor: SliderMotor | None = ModelField(default=None, description="what drives it")
 

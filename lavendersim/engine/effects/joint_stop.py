@@ -10,8 +10,9 @@ met by an impact in its order. What it carries is part of the joint's force and 
 
 from __future__ import annotations
 
+from ..terms import RowTerms
 from .decision import Decision, Facts, named
-from .effect import Effect, Fields, RowTerms
+from .effect import Effect, Fields
 from .joint_models import holding
 
 

@@ -5,6 +5,7 @@ Their inverse mass is 0, as that of fixed bodies; the step moves them all the sa
 
 from typing import Any
 
+from ..terms import StepTerms
 from .decision import Decision, Facts, named
 from .effect import Balance, Effect, Fields, Unlogged
 from .keys import BodyKey
@@ -37,6 +38,7 @@ EFFECT = Effect(
             prescribes_motion=True,
         ),
     ),
+    step=StepTerms(kinematic=True),
     balance=Balance(unlogged=Unlogged("energy", "{body} moves by itself, and its work")),
     fields=Fields(
         body=[("kinematic", "i8")],  # 1: keeps its velocity

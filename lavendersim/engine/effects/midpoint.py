@@ -4,6 +4,7 @@
 A body that a contact holds moves with its new velocity, which is the one that respects the contact.
 """
 
+from ..terms import StepTerms
 from .decision import Decision, Facts
 from .effect import Choice, Effect, Fields
 
@@ -28,6 +29,7 @@ EFFECT = Effect(
     decide=decide,
     per="body",
     chosen_by=Choice("integrator"),
+    step=StepTerms(mean_flight=True),
     fields=Fields(
         contact=[("dv_n", "f8")],  # change of v_n by forces in this step [m/s]
     ),

@@ -14,8 +14,10 @@ energy; lambda s_1 where bodies move by the velocity that the step ends with.
 from __future__ import annotations
 
 from ..spec import Spec
+from ..step_terms import step_terms
+from ..terms import RowTerms
 from .decision import Decision, Facts, named
-from .effect import Balance, Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
+from .effect import Balance, Column, Effect, Fields, Hooks, Kernel, kernel
 from .joint_models import holding
 
 _TWIST = "angular impulse on B of a motor that turns, world"
@@ -34,7 +36,7 @@ def make_contact_row(spec: Spec) -> Kernel:
     """Return `kernel(out, contact, va, vb)` that fills its columns of a contact."""
     from ..contact import make_frictionless_velocity
 
-    normal_velocity, centred = make_frictionless_velocity(spec), spec.has("contact_midpoint")
+    normal_velocity, centred = make_frictionless_velocity(spec), step_terms(spec).centred
 
     def log_motor(out, contact, va, vb):
         out.motor_work, out.twist_x, out.twist_y, out.twist_z = 0.0, 0.0, 0.0, 0.0

@@ -8,6 +8,7 @@ none of the others in, and its points are not looked at. One of a compound is a 
 
 from __future__ import annotations
 
+from ..terms import StepTerms
 from .decision import Decision, Facts
 from .effect import Effect, Fields
 from .impact_order import decide as has_parts
@@ -33,6 +34,7 @@ EFFECT = Effect(
     per="contact",
     needs=("impact_order",),
     overhead_with="impact_order",
+    step=StepTerms(overlooks=True),
     fields=Fields(
         pair=[("whole", "i8")],  # 1 while every point of its manifold takes part
     ),

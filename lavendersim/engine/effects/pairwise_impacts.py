@@ -38,8 +38,9 @@ def make_mark_impact(spec: Spec) -> Any:
     They are those between the two bodies that approach fastest, of all that meet.
     """
     from ..approach import MEETS, make_slowest
+    from ..row_terms import row_terms
 
-    slowest, springs = make_slowest(spec), spec.has("contact_spring")
+    slowest, springs = make_slowest(spec), row_terms(spec).elastic
 
     def mark_pairs(contacts, count, pairs, bodies, motion, slop):
         fastest = 0.0

@@ -1,5 +1,6 @@
 """Pose log: `/tf`, where every body is after every step, and `/robot_description` to draw it by."""
 
+from ..step_terms import step_terms
 from .decision import Decision, Facts
 from .effect import Effect, Hooks, kernel
 
@@ -13,7 +14,7 @@ def decide(facts: Facts) -> Decision:
 
 def make(spec):
     """Return `kernel(body, row)`; row: (7,) x y z qw qx qy qz, as it was where nothing turns."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def log_pose(body, row):
         row[0], row[1], row[2] = body.x, body.y, body.z

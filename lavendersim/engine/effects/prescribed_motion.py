@@ -20,6 +20,7 @@ from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Position, Quantity, Vector, Vector3
 
 from ..records import POSE, STRETCH
+from ..step_terms import step_terms
 from .decision import Decision, Facts, named
 from .effect import Drive, Effect, Fields, Hooks, kernel
 from .keys import BodyKey
@@ -118,7 +119,7 @@ def _of_body(body: Any) -> Iterator[tuple[Terms, dict[str, Any]]]:
 
 def make_lead_to_end(spec):
     """Return `kernel(body, velocity, dt)`: the mean velocity and spin that lead to its end."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def lead_to_end(body, v, dt):
         # The mean velocity and spin that lead there; a turn by the vector w dt is Cayley's.
@@ -146,7 +147,7 @@ def make_ends(spec):
     from ..drives import make_rates
     from ..vectors import Vec3, cross, plus, scaled
 
-    turns, rates = spec.has("rotation"), make_rates(spec)
+    turns, rates = step_terms(spec).turns, make_rates(spec)
 
     def ends(drive, knots, t, arm, after, h):
         # Velocity of the centre and spin of one end, less h^2/12 of their second derivatives; the
@@ -177,7 +178,7 @@ def make_drive(spec):
     from ..drives import make_begin_of_part, make_value
     from ..vectors import Vec3, cross, dot, plus, scaled
 
-    turns, centred = spec.has("rotation"), spec.has("contact_midpoint")
+    turns, centred = step_terms(spec).turns, step_terms(spec).centred
     begin_of_part, value = make_begin_of_part(spec), make_value(spec)
     ends: Any = make_ends(spec) if centred else None
     lead_to_end: Any = None if centred else make_lead_to_end(spec)
@@ -266,7 +267,7 @@ def make_drive(spec):
 
 def make_prescribe(spec):
     """Return `kernel(body, velocity)`: that of the end of the part, for that of its begin."""
-    turns, centred = spec.has("rotation"), spec.has("contact_midpoint")
+    turns, centred = step_terms(spec).turns, step_terms(spec).centred
 
     def prescribe(body, velocity):
         if centred:
@@ -282,7 +283,7 @@ def make_end_part(spec):
     """Return `kernel(bodies, params)`: bodies stand where the function says."""
     from ..rotation import orient
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def stand_there(bodies, params):
         for i in range(bodies.shape[0]):

@@ -17,6 +17,7 @@ from typing import Any
 
 from ..records import Field
 from ..spec import Spec
+from ..step_terms import step_terms
 from .decision import Decision, Facts
 from .effect import Effect, Fields, Hooks, kernel
 
@@ -73,7 +74,7 @@ def make_mean_velocity(spec):
     """Return `kernel(body, v, m, out)`: the velocity that carries a body, of what springs turn."""
     from ..integrate import LASTING
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def mean_velocity(body, v, m, out):
         late = 1.0
@@ -107,14 +108,14 @@ def make(spec):
     push_apart_packed: Any = make_push_apart(spec) if packs else None
     torque, by_newton = row_terms(spec).levers, projects_joints(spec)
     project_joints: Any = make_project_joints(spec) if by_newton else None
-    friction, midpoint = row_terms(spec).frictional, spec.has("midpoint")
+    friction, midpoint = row_terms(spec).frictional, step_terms(spec).mean_flight
     bilateral, bounded = row_terms(spec).bilateral, row_terms(spec).bounded
     turned_apart: Any = make_turned_apart(spec) if bilateral else None
-    centred, springs = spec.has("contact_midpoint"), spec.has("contact_spring")
-    at_surface = spec.has("impact_time")
+    centred, springs = step_terms(spec).centred, row_terms(spec).elastic
+    at_surface = step_terms(spec).timed_impacts
     mean_rate: Any = make_mean_rate(spec) if at_surface else None
-    controlled = spec.has("error_control")
-    joined = spec.has("spring") and midpoint
+    controlled = step_terms(spec).substeps
+    joined = step_terms(spec).sprung and midpoint
     mean_velocity: Any = make_mean_velocity(spec) if joined else None
 
     def project_positions(system, motion, pseudo, workspace, params):

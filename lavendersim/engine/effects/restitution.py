@@ -6,12 +6,14 @@ ever. At the surface, `impact_time` applies the law itself and only takes the co
 and so does the mistake of `capture_in_sweeps`.
 """
 
+from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Effect, Fields, Hooks, kernel
 from .keys import SHARE, SurfaceKey, larger
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     e = pair.surface.restitution
     return f"coefficient {e:g}" if e > 0.0 else ""
 
@@ -40,7 +42,7 @@ def make(spec):
     def noted(contact, pair, params):
         contact.e = pair.restitution
 
-    elsewhere = spec.has("impact_time") or has_hook(spec, "recapture")
+    elsewhere = step_terms(spec).timed_impacts or has_hook(spec, "recapture")
     return kernel(noted if elsewhere else captured, spec)
 
 
@@ -57,6 +59,7 @@ EFFECT = Effect(
             mix=larger,
         ),
     ),
+    step=StepTerms(rebounds=True),
     fields=Fields(
         pair=[("restitution", "f8")],  # e of the pair, the larger of its surfaces' [-]
     ),

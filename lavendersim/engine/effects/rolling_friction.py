@@ -10,14 +10,15 @@ psi_t: angular impulse on B [N m s]; a pair's c is the larger of its surfaces'. 
 
 from math import sqrt
 
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Column, Effect, Fields, Hooks, RowTerms, kernel
+from .effect import Column, Effect, Fields, Hooks, kernel
 from .keys import LENGTH, SurfaceKey, larger
 
 # spin: angular velocity of B relative to A after the solve, about the tangents.
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     length = pair.surface.rolling_friction
     return f"rolling friction {length:g} m" if length > 0.0 else ""
 

@@ -14,12 +14,14 @@ from typing import Annotated, Any, Literal
 from pydantic import Field as ModelField
 from pydantic import Strict
 
+from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.names import BodyName, NewName
 from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 
 from ..spec import Spec
+from ..terms import RowTerms
 from .decision import Decision, Facts, named
-from .effect import Column, Effect, Fields, Hooks, Kernel, RowTerms, kernel
+from .effect import Column, Effect, Fields, Hooks, Kernel, kernel
 from .joint_models import AnyJoint, Connection, Joint
 from .keys import SceneKey, TurnOf
 
@@ -47,7 +49,7 @@ class Rope(Connection):
     )
 
 
-Connections = dict[NewName, Annotated[Rope | AnyJoint, ModelField(discriminator="kind")]]
+Connections = dict[NewName, Annotated[Rope | AnyJoint, ByKind()]]
 
 
 def resolve(connections: Connections, turn: TurnOf) -> Connections:
@@ -119,7 +121,7 @@ EFFECT = Effect(
             resolve=resolve,
         ),
     ),
-    row=RowTerms(frictionless=True),
+    row=RowTerms(frictionless=True, taut=True),
     fields=Fields(
         contact=[
             ("span", "f8"),  # of the row of a rope: how far its ends are apart [m]; else 0

@@ -3,6 +3,7 @@
 from collections.abc import Hashable
 
 from ..records import ANGULAR_VELOCITY, ORIENTED_BODY
+from ..terms import StepTerms
 from .decision import BodyFacts, Decision, Facts, PairFacts, named
 from .effect import Effect, Fields, Hooks, kernel
 
@@ -51,7 +52,7 @@ def _kind(body: BodyFacts) -> Kind:
     return body.shape, body.movable, body.name if body.config is None else body.config.surface
 
 
-def _touched(facts: Facts, pairs: list[PairFacts]) -> set[Kind]:
+def _touched(facts: Facts, pairs: list[PairFacts[str]]) -> set[Kind]:
     """Return the kinds of bodies that take part in some pairs."""
     names = {name for pair in pairs for name in (pair.a, pair.b)}
     return {_kind(body) for body in facts.bodies if body.name in names}
@@ -75,6 +76,7 @@ EFFECT = Effect(
     name="rotation",
     decide=decide,
     per="body",
+    step=StepTerms(turns=True),
     fields=Fields(
         body=[*ORIENTED_BODY, ("inv_ix", "f8"), ("inv_iy", "f8"), ("inv_iz", "f8")],
         velocity=ANGULAR_VELOCITY,

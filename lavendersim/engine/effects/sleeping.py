@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 from ..spec import Spec
+from ..step_terms import step_terms
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Fields, Hooks, kernel
 
@@ -37,7 +38,7 @@ def decide(facts: Facts) -> Decision:
 
 def make_still(spec: Spec) -> Any:
     """Return `kernel(body) -> whether it cannot move in this step`."""
-    kinematic = spec.has("kinematic")
+    kinematic = step_terms(spec).kinematic
 
     def still(body):
         if kinematic:
@@ -50,7 +51,7 @@ def make_still(spec: Spec) -> Any:
 
 def make_measure_speeds(spec: Spec) -> Any:
     """Return `kernel(bodies, velocities)`: `point_speed` of every body, before forces act."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def measure_speeds(bodies, velocities):
         for i in range(bodies.shape[0]):
@@ -89,7 +90,7 @@ def _either(one: Any, other: Any, spec: Spec) -> Any:
 
 def make_wake_island(spec: Spec) -> Any:
     """Return `kernel(bodies, island)`: every body of an island gets its mass back."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def wake_island(bodies, island):
         for i in range(bodies.shape[0]):
@@ -131,7 +132,7 @@ def make_wake(spec: Spec) -> Any:
 
     Who wakes has contacts that were not made: the step then begins again.
     """
-    kinematic = spec.has("kinematic")
+    kinematic = step_terms(spec).kinematic
     wake_island, is_pushed = make_wake_island(spec), make_is_pushed(spec)
 
     def disturbs(other, params):
@@ -174,8 +175,8 @@ def make_update_sleeping(spec: Spec) -> Any:
     from ..integrate import keeps_motion
     from ..islands import make_label_islands
 
-    turns, keeps = spec.has("rotation"), keeps_motion(spec)
-    kinematic = spec.has("kinematic")
+    turns, keeps = step_terms(spec).turns, keeps_motion(spec)
+    kinematic = step_terms(spec).kinematic
     label_islands, is_pushed = make_label_islands(spec), make_is_pushed(spec)
 
     def put_to_sleep(body, v, label):

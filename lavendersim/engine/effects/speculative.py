@@ -7,6 +7,8 @@ within the slop of each other rest where they are: closing gaps of round-off siz
 stack moving.
 """
 
+from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Hooks, kernel
 
@@ -23,8 +25,8 @@ def make(spec):
     from ..free_flight import target_of_flight
 
     # Without either, a body moves through the whole step with the velocity it ends it with.
-    flies = spec.has("midpoint") or spec.has("impact_time")
-    share = 0.5 if spec.has("midpoint") else 0.0
+    flies = step_terms(spec).mean_flight or step_terms(spec).timed_impacts
+    share = 0.5 if step_terms(spec).mean_flight else 0.0
 
     def speculative(contact, pair, params):
         if contact.phi > params.slop:
@@ -44,5 +46,6 @@ EFFECT = Effect(
     decide=decide,
     per="contact",
     chosen_by=Choice("speculative"),
+    step=StepTerms(ahead=True),
     hooks=Hooks(capture=make),
 )

@@ -23,6 +23,8 @@ from lavendersim.quantities.quantity import Quantity, Vector, Vector3
 
 from ..records import ORIENTED_BODY
 from ..spec import Spec
+from ..step_terms import step_terms
+from ..terms import StepTerms
 from .decision import Decision, Facts, named
 from .effect import Balance, Column, Effect, Fields, Hooks, Kernel, kernel
 from .keys import SceneKey, TurnOf
@@ -120,7 +122,7 @@ def make_act(spec: Spec) -> Kernel:
     place = make_place(spec)
     if is_iterated(spec):
         return make_act_midway(spec, place)
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def act(links, bodies, velocities, motion, params, counters):
         dt = params.dt
@@ -167,7 +169,7 @@ def make_act(spec: Spec) -> Kernel:
 
 def is_iterated(spec: Spec) -> bool:
     """Whether impulses of springs are found by passes."""
-    return spec.has("midpoint")
+    return step_terms(spec).mean_flight
 
 
 def make_act_beside(spec: Spec, solve: Kernel) -> Kernel:
@@ -263,6 +265,7 @@ EFFECT = Effect(
     ),
     acts_on=acts_on,
     links=links,
+    step=StepTerms(sprung=True, bounces_vary=True),
     fields=Fields(
         body=[*ORIENTED_BODY, *_MOVED],
         link=[

@@ -22,11 +22,11 @@ from .effect import Balance, Effect, Fields, Hooks, Kernel, kernel
 from .keys import COEFFICIENT, SurfaceKey, geometric_mean, larger
 
 
-def _is_static(pair: PairFacts) -> bool:
+def _is_static(pair: PairFacts[str]) -> bool:
     return bool(0.0 < pair.surface.friction < pair.surface.static_friction)
 
 
-def _reason(pair: PairFacts) -> str:
+def _reason(pair: PairFacts[str]) -> str:
     if not _is_static(pair):
         return ""
     at_rest, speed = pair.surface.static_friction, pair.surface.stribeck_velocity

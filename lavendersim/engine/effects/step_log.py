@@ -4,6 +4,7 @@ What an effect adds to a step it logs itself: its `step_columns` and its hook `s
 """
 
 from ..spec import Spec
+from ..step_terms import step_terms
 from .decision import Decision, Facts
 from .effect import Column, Effect, Hooks, kernel
 
@@ -41,10 +42,10 @@ def make(spec: Spec, log_pose, loggers):
     """
     from ..compile import chain
     from ..rotation import inertia_times
-    from . import made_once
+    from . import has_hook, made_once
 
-    rotation, tolerance = spec.has("rotation"), spec.tolerance
-    sleeps = spec.has("sleeping")
+    rotation, tolerance = step_terms(spec).turns, spec.tolerance
+    sleeps = has_hook(spec, "update_sleeping")
     speeds = 6 if rotation else 3  # vx vy vz, wx wy wz: the first words of a velocity record
     log_more = chain(loggers, spec)
     logs_velocity, log_velocity = made_once(spec, "log_velocity")

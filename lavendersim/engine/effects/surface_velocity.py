@@ -9,8 +9,9 @@ from typing import Any
 from lavendersim.quantities.quantity import Vector3, Velocity
 
 from ..records import ORIENTED_BODY
+from ..terms import RowTerms
 from .decision import Decision, Facts, named
-from .effect import Balance, Effect, Fields, Hooks, RowTerms, Unlogged, kernel
+from .effect import Balance, Effect, Fields, Hooks, Unlogged, kernel
 from .keys import BodyKey, Turn
 
 

@@ -13,6 +13,7 @@ from typing import Annotated, Any, Final, Literal, NamedTuple
 
 from pydantic import Field
 
+from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Quantity
 
@@ -141,7 +142,7 @@ class FactorTable(ConfigModel):
         return Terms(tuple(zip(self.times, self.values, strict=True)))
 
 
-TimeFunction = Annotated[Ramp | Sine | Pulse | FactorTable, Field(discriminator="kind")]
+TimeFunction = Annotated[Ramp | Sine | Pulse | FactorTable, ByKind()]
 
 
 def terms_of(function: TimeFunction | None) -> Terms:

@@ -7,14 +7,15 @@ psi_n: angular impulse on B [N m s]; a pair's c [m] is the larger of its surface
 no other friction: mu may be 0, friction's block is there for its frame.
 """
 
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
-from .effect import Column, Effect, Fields, Hooks, RowTerms, kernel
+from .effect import Column, Effect, Fields, Hooks, kernel
 from .keys import LENGTH, SurfaceKey, larger
 
 # spin: angular velocity of B relative to A after the solve, about the normal.
 
 
-def _described(pair: PairFacts) -> str:
+def _described(pair: PairFacts[str]) -> str:
     length = pair.surface.torsional_friction
     return f"torsional friction {length:g} m" if length > 0.0 else ""
 

@@ -35,10 +35,12 @@ def make(spec: Spec) -> Any:
 
     log: `memory.Log`, whose row of the step knows its contacts.
     """
+    from ..row_terms import row_terms
     from ..vectors import Vec3, dot
+    from . import has_hook
 
-    contacts, sleeps = spec.has("contact_log"), spec.has("sleeping")
-    joins = spec.has("joint")
+    contacts, sleeps = has_hook(spec, "log_contacts"), has_hook(spec, "update_sleeping")
+    joins = row_terms(spec).bilateral
 
     def press(one, contact_rows, first, count):
         for c in range(first, first + count):

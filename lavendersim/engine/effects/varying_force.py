@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..records import ORIENTED_BODY, POSE, STRETCH
+from ..step_terms import step_terms
 from .decision import Decision, Facts, named
 from .effect import Balance, Column, Drive, Effect, Fields, Hooks, kernel
 from .time_functions import terms_of
@@ -58,7 +59,7 @@ def make_drive(spec):
     from ..drives import make_begin_of_part, make_mean
     from ..vectors import Vec3, cross, from_body, plus, scaled
 
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
     begin_of_part, mean = make_begin_of_part(spec), make_mean(spec)
 
     def half_way(body, v, dt, vector):
@@ -137,7 +138,7 @@ def make_pushes(spec):
 
 def make_end_part(spec):
     """Return `kernel(bodies, params)`: impulse and work of a part."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def add_work(bodies, params):
         for i in range(bodies.shape[0]):

@@ -4,6 +4,7 @@ The row of a pose goes on with them: x y z qw qx qy qz vx vy vz wx wy wz, in wor
 """
 
 from ..spec import Spec
+from ..step_terms import step_terms
 from .decision import Decision, Facts
 from .effect import Effect, Hooks, Kernel, kernel
 
@@ -19,7 +20,7 @@ def decide(facts: Facts) -> Decision:
 
 def make(spec: Spec) -> Kernel:
     """Return `kernel(v, row)`; row: (13,), of which the last six are written; no spin reads 0."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def log_velocity(v, row):
         row[7], row[8], row[9] = v.vx, v.vy, v.vz

@@ -8,6 +8,7 @@ Where impacts part a step, a part may be of any length: what a solve leaves (1e-
 does not shrink with it, and would be scaled to the next. Brief parts leave the cache as it is.
 """
 
+from ..step_terms import step_terms
 from .decision import Decision, Facts
 from .effect import Effect, Fields, Hooks, kernel
 
@@ -107,7 +108,7 @@ def make_store(spec):
     terms = row_terms(spec)
     torsional, rolling = terms.torsional, terms.rolling
     # Substeps are as short as an accuracy requires, one after the other.
-    parted = spec.has("impact_order") and not spec.has("error_control")
+    parted = step_terms(spec).ordered_impacts and not step_terms(spec).substeps
 
     def store_contacts(contacts, count, bodies, cache, counters, params):
         if parted:

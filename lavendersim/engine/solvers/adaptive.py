@@ -22,6 +22,7 @@ from math import inf, log
 from typing import Any, NamedTuple
 
 from ..compile import kernel
+from ..effects import has_hook
 from ..residual import make_residual
 from ..spec import Spec
 from .iteration import Iteration
@@ -81,7 +82,7 @@ class Adaption(NamedTuple):
 
 def make(spec: Spec) -> Iteration:
     """Return the sweeps, and Newton's method between them."""
-    packs, chooses = packs_late(spec), spec.has("least_norm")
+    packs, chooses = packs_late(spec), has_hook(spec, "choose_impulses")
     put_back: Any = None
     sweep: Any = None
     if packs:
@@ -122,7 +123,8 @@ def make(spec: Spec) -> Iteration:
 
 
 def _make_proceed(spec: Spec, put_back: Any) -> Any:
-    newton, residual, chooses = make_newton(spec), make_residual(spec), spec.has("least_norm")
+    newton, residual = make_newton(spec), make_residual(spec)
+    chooses = has_hook(spec, "choose_impulses")
     packs = put_back is not None
 
     def proceed(system, workspace, params, counters, carry):

@@ -6,27 +6,22 @@ reported at the key, a bad value at the value, a missing key at the mapping that
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from lavendersim.experiment.checks.annotations import (
-    Model,
-    alternatives,
-    fields,
-    inside,
-    kinds,
-    literals,
-    models_of,
-    names_of,
-)
 from lavendersim.experiment.text.node import BROKEN, Broken, Mark, Node, Path, key_mark
 from lavendersim.experiment.text.place import missing_key, name_of, place_of
 from lavendersim.experiment.text.report import Report
+from lavendersim.quantities.chosen_kind import NO_KIND
 from lavendersim.quantities.found import found, near, nearest, quoted
+
+Model = type[BaseModel]
 
 # What pydantic expects, by the type of its error; in braces from the error's context.
 _EXPECTED = {
@@ -36,13 +31,20 @@ _EXPECTED = {
     "bool_type": "true or false",
     "dict_type": "a mapping",
     "model_type": "a mapping",
-    "model_attributes_type": "a mapping",
+    NO_KIND: "a mapping",
     "tuple_type": "a list",
     "too_short": "{min_length} item{s} or more",
     "too_long": "{max_length} item{s} or fewer",
 }
+_QUOTED = re.compile("'([^']*)'")  # pydantic has a Literal's texts so, in one text
 _SWITCHED = ["on", "off"]  # plain texts in YAML 1.2
 _SWITCHES = {"yes": "true", "on": "true", "no": "false", "off": "false"}
+
+
+@cache
+def fields(model: Model) -> dict[str, FieldInfo]:
+    """Return the fields of a model by the keys under which they stand in a file."""
+    return {info.alias or name: info for name, info in model.model_fields.items()}
 
 
 def report_errors(
@@ -114,22 +116,23 @@ def _sentence(
             return node.mark, f"{name}: expected at least {step + 1} items, {_count(node)}"
         info = _keys_at(models, path).get(step)
         return node.mark, missing_key(str(step), path, info.description if info else None)
-    if kind == "union_tag_not_found":
-        return node.mark, missing_key("kind", path, f"one of {', '.join(_forms(models, path)[1])}")
-    if kind == "union_tag_invalid":
-        tag, valid = node.get("kind") or node, _forms(models, path)[1]
+    if kind == NO_KIND and isinstance(node.content, dict):
+        tag, valid = node.get("kind"), context["kinds"]
+        if not tag:
+            return node.mark, missing_key("kind", path, f"one of {valid}")
         if tag.text is None:
-            return tag.mark, f"kind: expected one of {', '.join(valid)}, found {found(tag.data)}"
-        hint = nearest(tag.text, valid)
+            return tag.mark, f"kind: expected one of {valid}, found {found(tag.data)}"
+        hint = nearest(tag.text, valid.split(", "))
         return tag.mark, f"unknown kind {quoted(tag.text)} in {place_of(path)}{hint}"
     if kind == "lavender":
         return node.mark, f"{name}: {context['sentence']}"
     if kind == "literal_error":
-        return node.mark, f"{name}: {_choice(_forms(models, path)[0], item['input'])}"
+        return node.mark, f"{name}: {_choice(context['expected'], item['input'])}"
     return node.mark, f"{name}: {_expected(item, node)}"
 
 
-def _choice(valid: list[str], value: Any) -> str:
+def _choice(listed: str, value: Any) -> str:
+    valid = _QUOTED.findall(listed)
     close = near(value, valid) if isinstance(value, str) else None
     hint = f'; did you mean "{close}"?' if close else ""
     if isinstance(value, bool) and valid == _SWITCHED:
@@ -157,18 +160,6 @@ def _expected(item: ErrorDetails, node: Node) -> str:
 
 def _keys_at(models: Mapping[Path, Model], path: Path) -> dict[str, FieldInfo]:
     return fields(models[path]) if path in models else {}
-
-
-def _forms(models: Mapping[Path, Model], path: Path) -> tuple[list[str], list[str]]:
-    """Return the texts that a value may be, and the kinds, from the model that it stands in."""
-    holder = next(path[:k] for k in range(len(path) - 1, -1, -1) if path[:k] in models)
-    key, *rest = path[len(holder) :]
-    info = fields(models[holder]).get(str(key))
-    annotation = info.annotation if info is not None else names_of(models[holder])
-    for step in rest:
-        annotation = inside(annotation, tuple if isinstance(step, int) else dict)
-    texts = [text for member in alternatives(annotation) for text in literals(member)]
-    return texts, [kind for model in models_of(annotation) for kind in kinds(model)]
 
 
 def _count(node: Node) -> str:

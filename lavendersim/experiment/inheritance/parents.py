@@ -36,7 +36,7 @@ def with_parents(root: Node, path: Path, name: str, report: Report) -> tuple[Nod
     """
     if EXTENDS not in root.entries:
         return None
-    said = root.get(EXTENDS)
+    named = root.get(EXTENDS)
     chain, names, trees = [path.resolve()], [name], [root]
     project = project_of(chain[0])
     while (here := trees[-1].get(EXTENDS)) and here.content is not None:
@@ -50,7 +50,7 @@ def with_parents(root: Node, path: Path, name: str, report: Report) -> tuple[Nod
     files = ", ".join(os.path.relpath(file, chain[0].parent) for file in chain)
     text = f"# {' '.join(files.split())}: merged, the first over those that it extends.\n"
     text += as_yaml(tree.data)
-    _check_size(text, said.mark, report)
+    _check_size(text, named.mark, report)
     return tree, text
 
 
@@ -62,24 +62,24 @@ def project_of(path: Path) -> Path:
     return path.parent.parent
 
 
-def _parent(said: Node, known: tuple[list[Path], list[str], Path], report: Report) -> Node | None:
+def _parent(named: Node, known: tuple[list[Path], list[str], Path], report: Report) -> Node | None:
     """Return the tree of the file that is named; notes why it is none. known: grows by it."""
     chain, names, project = known
 
     def refuse(sentence: str) -> None:
-        report.add(said.mark, f"{EXTENDS}: {sentence}")
+        report.add(named.mark, f"{EXTENDS}: {sentence}")
 
-    if said.text is None or not said.text.endswith(SUFFIXES):
+    if named.text is None or not named.text.endswith(SUFFIXES):
         refuse(
-            f"expected the path of a file *.yaml, such as ../base.yaml, found {found(said.data)}"
+            f"expected the path of a file *.yaml, such as ../base.yaml, found {found(named.data)}"
         )
         return None
-    called = quoted(said.text)
-    if os.path.isabs(said.text):
+    called = quoted(named.text)
+    if os.path.isabs(named.text):
         refuse(f"expected a path from this file's folder, found {called}")
         return None
     try:
-        file = (chain[-1].parent / said.text).resolve()
+        file = (chain[-1].parent / named.text).resolve()
     except (OSError, RuntimeError):  # links in a circle
         refuse(f"{called}: a link that leads nowhere")
         return None
@@ -92,7 +92,7 @@ def _parent(said: Node, known: tuple[list[Path], list[str], Path], report: Repor
     if len(chain) > MOST_PARENTS:
         refuse(f"expected at most {MOST_PARENTS} files one above the other")
         return None
-    name = os.path.normpath(Path(names[-1]).parent / said.text)
+    name = os.path.normpath(Path(names[-1]).parent / named.text)
     try:
         raw, size = read_file(file, name)
     except UsageError as error:

@@ -10,6 +10,7 @@ from pydantic_core import CoreSchema
 from lavendersim.experiment.models.bodies import ArrangedBody
 from lavendersim.experiment.models.tree import MOST_BODIES
 from lavendersim.experiment.text.place import Place
+from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Direction, Position, Quantity, Vector, Vector3
 
@@ -159,4 +160,4 @@ class Rack(_Arranged):
     gap: Gap = Field(default=0.0, description="[m] between neighbours of a row")
 
 
-Arrangement = Annotated[Tower | Pyramid | Grid | Row | Ring | Rack, Field(discriminator="kind")]
+Arrangement = Annotated[Tower | Pyramid | Grid | Row | Ring | Rack, ByKind()]

@@ -15,13 +15,13 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar, Final
 
-from pydantic import Field, Tag
+from pydantic import Field
 
 from lavendersim.experiment.text.node import Node
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.formula import as_number
 from lavendersim.quantities.model import ConfigModel
-from lavendersim.quantities.quantity import Quantity, either
+from lavendersim.quantities.quantity import Either, Quantity
 from lavendersim.quantities.scalars import exact
 
 MOST_STEPS: Final = 99_999  # a sweep has at most 100,000 cells
@@ -54,12 +54,9 @@ class Interval(ConfigModel):
 
 
 PathsOf = Annotated[
-    Annotated[tuple[str, ...], Field(min_length=1), Tag("together")]
-    | Annotated[dict[str, tuple[Any, ...]], Field(min_length=1), Tag("own")],
-    either(
-        "a list of paths, or a mapping from paths to lists of values",
-        {tuple: "together", list: "together", dict: "own"},
-    ),
+    Annotated[tuple[str, ...], Field(min_length=1)]
+    | Annotated[dict[str, tuple[Any, ...]], Field(min_length=1)],
+    Either("a list of paths, or a mapping from paths to lists of values", tuple, dict),
 ]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, Tag
+from pydantic import Field
 
 from lavendersim.cell.body import Release
 from lavendersim.cell.surface import Surface
@@ -12,17 +12,18 @@ from lavendersim.engine.effects import BODY_KEYS, MOTION_KEYS
 from lavendersim.experiment.models.shapes import SOLIDS, TURNED, Orientation, Shape, Solid
 from lavendersim.experiment.models.tree import PRESCRIBE_MOTION
 from lavendersim.experiment.text.place import Place
+from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.found import near
 from lavendersim.quantities.model import ConfigModel, declared
 from lavendersim.quantities.names import SurfaceName
 from lavendersim.quantities.quantity import (
     AngularVelocity,
+    Either,
     Position,
     Quantity,
     Vector,
     Vector3,
     Velocity,
-    either,
 )
 
 _CONSTRAIN = ("fixed", *PRESCRIBE_MOTION)
@@ -34,11 +35,8 @@ STATIC_HINT = "a body that never moves has fixed: true"
 
 
 SurfaceOf = Annotated[
-    Annotated[SurfaceName, Tag("name")] | Annotated[Surface, Tag("properties")],
-    either(
-        "the name of a surface or {restitution: ..., friction: ...}",
-        {str: "name", dict: "properties"},
-    ),
+    SurfaceName | Surface,
+    Either("the name of a surface or {restitution: ..., friction: ...}", str, dict),
 ]
 
 
@@ -116,7 +114,7 @@ class Body(_Matter):
 class ArrangedBody(_Matter):
     """A body that stands in several places: all that a body has but its position."""
 
-    shape: Annotated[Solid, Field(discriminator="kind")] = Field(
+    shape: Annotated[Solid, ByKind()] = Field(
         description=f"{', '.join(SOLIDS[:-1])} or {SOLIDS[-1]}"
     )
 

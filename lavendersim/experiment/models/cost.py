@@ -8,13 +8,13 @@ is true.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Final, Literal
 
-from pydantic import Field, Tag
+from pydantic import Field
 
 from lavendersim.cell.choices import Preset, Solver
 from lavendersim.cell.numerics import Accuracy, Sweeps, Timestep, Tolerance
-from lavendersim.experiment.models.overhead import TimedFrom, all_or_named, refuse_what_interrupts
+from lavendersim.experiment.models.overhead import TimedFrom, refuse_what_interrupts
 from lavendersim.experiment.models.tree import products
 from lavendersim.experiment.text.node import key_mark
 from lavendersim.experiment.text.place import Place
@@ -22,7 +22,7 @@ from lavendersim.measures.specs.base import ClosedForm
 from lavendersim.peers.catalogue import PEERS
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import MeasureName
-from lavendersim.quantities.quantity import Quantity, either
+from lavendersim.quantities.quantity import Either, Quantity
 
 # The numerics that a setting of the grid has, beside an accuracy.
 KNOBS: Final = ("timestep", "solver", "sweeps", "tolerance", "warm_start")
@@ -35,27 +35,13 @@ Share = Annotated[float, Quantity(above=0)]
 Repeats = Annotated[int, Quantity(whole=True, minimum=FEWEST_REPEATS, maximum=1000, hint=FEW)]
 
 
-def _truth_form(value: Any) -> str | None:
-    if value == "finest":
-        return "finest"
-    if isinstance(value, dict | ClosedForm):
-        return "form"
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    return "number" if is_number else None
-
-
 Truth = Annotated[
-    Annotated[float, Quantity(), Tag("number")]
-    | Annotated[Literal["finest"], Tag("finest")]
-    | Annotated[ClosedForm, Tag("form")],
-    either("a number, {form, bodies}, or finest", _truth_form),
+    Annotated[float, Quantity()] | Literal["finest"] | ClosedForm,
+    Either("a number, {form, bodies}, or finest", float, "finest", dict),
 ]
-
-
 SolverNames = Annotated[
-    Annotated[Literal["all"], Tag("all")]
-    | Annotated[tuple[Solver, ...], Field(min_length=1), Tag("named")],
-    either("all, or a list of solvers", all_or_named),
+    Literal["all"] | Annotated[tuple[Solver, ...], Field(min_length=1)],
+    Either("all, or a list of solvers", "all", tuple),
 ]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Final
 
-from pydantic import ConfigDict, Field, Tag
+from pydantic import ConfigDict, Field
 
 from lavendersim.cell.choices import Preset, Switch
 from lavendersim.cell.numerics import Numerics
@@ -27,7 +27,7 @@ from lavendersim.measures.specs.expectation import ExpectSpec
 from lavendersim.peers.catalogue import LAVENDER
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import ConstantName, NewName
-from lavendersim.quantities.quantity import Quantity, either
+from lavendersim.quantities.quantity import Either, Quantity
 
 # Solvers that no sweep visits contact by contact.
 _WITHOUT_SWEEPS: Final = ("jacobi", "accelerated_projected_gradient")
@@ -40,11 +40,8 @@ class NumericsSource(Numerics):
 
 
 NumericsOf = Annotated[
-    Annotated[Preset, Tag("preset")] | Annotated[NumericsSource, Tag("values")],
-    either(
-        "the name of a preset (chapter, default) or a mapping of values",
-        {str: "preset", dict: "values"},
-    ),
+    Preset | NumericsSource,
+    Either("the name of a preset (chapter, default) or a mapping of values", str, dict),
 ]
 
 
@@ -67,11 +64,8 @@ class Effects(ConfigModel):
 
 Product = dict[NewName, Axis]
 SweepOf = Annotated[
-    Annotated[Product, Tag("product")] | Annotated[tuple[Product, ...], Tag("union")],
-    either(
-        "a mapping of axes, or a list of such mappings",
-        {dict: "product", tuple: "union", list: "union"},
-    ),
+    Product | tuple[Product, ...],
+    Either("a mapping of axes, or a list of such mappings", dict, tuple),
 ]
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, Tag
+from pydantic import Field
 
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
-from lavendersim.quantities.quantity import Quantity, Vector, Vector3, either
+from lavendersim.quantities.quantity import Either, Quantity, Vector, Vector3
 
 GRAVITY = 9.81  # [m/s^2]
 
@@ -39,15 +39,8 @@ class TiltedGravity(ConfigModel):
 
 
 Gravity = Annotated[
-    Annotated[
-        float,
-        Quantity("m/s^2", minimum=0, hint="a number is the magnitude along -z"),
-        Tag("magnitude"),
-    ]
-    | Annotated[Vector3, Vector(3, Quantity("m/s^2")), Tag("vector")]
-    | Annotated[TiltedGravity, Tag("tilted")],
-    either(
-        "a number, a list of 3 numbers [m/s^2] or {slope: ...}",
-        {dict: "tilted", tuple: "vector", list: "vector", object: "magnitude"},
-    ),
+    Annotated[Vector3, Vector(3, Quantity("m/s^2"))]
+    | TiltedGravity
+    | Annotated[float, Quantity("m/s^2", minimum=0, hint="a number is the magnitude along -z")],
+    Either("a number, a list of 3 numbers [m/s^2] or {slope: ...}", tuple, dict, object),
 ]

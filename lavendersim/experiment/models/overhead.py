@@ -2,32 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Final, Literal
 
-from pydantic import Field, Tag
+from pydantic import Field
 
 from lavendersim.experiment.text.node import Node, Path, key_mark
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
-from lavendersim.quantities.quantity import Quantity, either
+from lavendersim.quantities.quantity import Either, Quantity
 
 REQUIRED: Final = "required"
 
 
-def all_or_named(value: Any) -> str | None:
-    """Return the form of `all`, or of a list of names."""
-    return "all" if value == "all" else "named" if isinstance(value, list | tuple) else None
-
-
-def _which_effects(value: Any) -> str | None:
-    return REQUIRED if value == REQUIRED else all_or_named(value)
-
-
 EffectNames = Annotated[
-    Annotated[Literal["all"], Tag("all")]
-    | Annotated[Literal["required"], Tag(REQUIRED)]
-    | Annotated[tuple[str, ...], Field(min_length=1), Tag("named")],
-    either("all, required, or a list of effects", _which_effects),
+    Literal["all", "required"] | Annotated[tuple[str, ...], Field(min_length=1)],
+    Either("all, required, or a list of effects", ("all", REQUIRED), tuple),
 ]
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, Tag
+from pydantic import Field
 
 from lavendersim.cell.record import ALL, NONE, EveryOrAll, EveryOrNone
 from lavendersim.experiment.models.tree import after_the_end, not_after
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.model import ConfigModel
-from lavendersim.quantities.quantity import Quantity, either
+from lavendersim.quantities.quantity import Either, Quantity
 
 
 class Window(ConfigModel):
@@ -32,17 +32,10 @@ class Window(ConfigModel):
 
 
 Residuals = Annotated[
-    Annotated[Literal["none", "all"], Tag("switch")] | Annotated[Window, Tag("window")],
-    either("none, all or {from: seconds, to: seconds}", {str: "switch", dict: "window"}),
+    Literal["none", "all"] | Window, Either("none, all or {from: seconds, to: seconds}", str, dict)
 ]
-
-
-Steps = Annotated[
-    Annotated[EveryOrAll, Tag("every")] | Annotated[Window, Tag("window")],
-    either(  # a number is read as the text, which says how it would be right
-        "all, every N or {from: seconds, to: seconds}",
-        {str: "every", int: "every", dict: "window"},
-    ),
+Steps = Annotated[  # a number is read as the text, which says how it would be right
+    EveryOrAll | Window, Either("all, every N or {from: seconds, to: seconds}", (str, int), dict)
 ]
 
 

@@ -9,19 +9,20 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Union
 
-from pydantic import Field, GetJsonSchemaHandler, Tag
+from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from lavendersim.cell.shapes import PRIMITIVES, Plane, Primitive
+from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.kinds import kind_of
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import (
     Direction,
+    Either,
     Position,
     Quantity,
     Vector,
     Vector3,
-    either,
 )
 
 
@@ -89,21 +90,15 @@ class AxisAngle(ConfigModel):
 
 
 Orientation = Annotated[
-    Annotated[
-        tuple[float, float, float, float], Vector(4, Quantity(), nonzero=True), Tag("quaternion")
-    ]
-    | Annotated[AxisAngle, Tag("rotation")],
-    either(
-        "a quaternion [w, x, y, z] or {axis: [x, y, z], degrees: angle}",
-        {tuple: "quaternion", list: "quaternion", dict: "rotation"},
-    ),
+    Annotated[tuple[float, float, float, float], Vector(4, Quantity(), nonzero=True)] | AxisAngle,
+    Either("a quaternion [w, x, y, z] or {axis: [x, y, z], degrees: angle}", tuple, dict),
 ]
 
 
 class Part(ConfigModel):
     """One convex piece of a compound."""
 
-    shape: Annotated[Simple, Field(discriminator="kind")] = Field(
+    shape: Annotated[Simple, ByKind()] = Field(
         description=f"{', '.join(KINDS[:-1])} or {KINDS[-1]}"
     )
     position: Position = Field(
@@ -132,4 +127,4 @@ if TYPE_CHECKING:
     Shape = Plane | Primitive | Polyhedral | Compound
 else:
     Solid = Union[(*SIMPLE, Compound)]
-    Shape = Annotated[Union[(Plane, Solid)], Field(discriminator="kind"), OrName()]  # noqa: UP007
+    Shape = Annotated[Union[(Plane, Solid)], ByKind(), OrName()]  # noqa: UP007

@@ -80,11 +80,11 @@ def _row(row: Row, shape: CellSimple | CellCompound, orientation: Quaternion) ->
     if spacing is None:
         spacing = _length(shape, orientation, along) + (row.gap or 0.0)
     if isinstance(spacing, tuple):
-        ways = [0.0, *accumulate(spacing)]
+        distances = [0.0, *accumulate(spacing)]
     else:
-        ways = [k * spacing for k in range(row.count)]
+        distances = [k * spacing for k in range(row.count)]
     x, y, z = row.origin
-    return [(x + way * along[0], y + way * along[1], z + way * along[2]) for way in ways]
+    return [(x + s * along[0], y + s * along[1], z + s * along[2]) for s in distances]
 
 
 def _angles(ring: Ring) -> list[float]:

@@ -28,12 +28,12 @@ _CLEARANCE: Final[Path] = ("release", "clearance")
 
 def varies_starts(axis: SweptAxis) -> bool:
     """Whether an axis says how bodies start, and nothing else."""
-    return all(_says_start(path) for path in axis.paths)
+    return all(_is_of_start(path) for path in axis.paths)
 
 
 def class_of(point: SweepPoint) -> tuple[Hashable, ...]:
     """Return what cells have in common that differ in how bodies start alone."""
-    return tuple((id(axis), _said(axis, index)) for axis, index in point.choices)
+    return tuple((id(axis), _likeness(axis, index)) for axis, index in point.choices)
 
 
 def is_valid(point: SweepPoint, axis: SweptAxis, root: Node) -> bool:
@@ -42,14 +42,14 @@ def is_valid(point: SweepPoint, axis: SweptAxis, root: Node) -> bool:
     return all(_fits(tree, path) for path in axis.paths)
 
 
-def _says_start(path: Path) -> bool:
+def _is_of_start(path: Path) -> bool:
     place = path[len(BODIES) + 1 :]
     if path[: len(BODIES)] != BODIES:
         return False
     return place in (_PHASE, _CLEARANCE) or (len(place) in (1, 2) and place[0] in _VECTORS)
 
 
-def _said(axis: SweptAxis, index: int) -> Hashable:
+def _likeness(axis: SweptAxis, index: int) -> Hashable:
     """Return what cells with this value share; without others like it, the index itself."""
     if not varies_starts(axis):
         return index

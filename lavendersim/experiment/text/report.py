@@ -34,7 +34,7 @@ class Report:
 
     def close_round(self) -> bool:
         """End the round; tells whether nothing was found in it, be it new or reported before."""
-        self._defects += [mark.defect(self.name, said) for mark, said in self._round]
+        self._defects += [mark.defect(self.name, sentence) for mark, sentence in self._round]
         self._reported |= {mark for mark, _ in self._round}
         self._round.clear()
         sound, self._sound = self._sound, True

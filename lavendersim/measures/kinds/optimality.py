@@ -31,10 +31,10 @@ def optimality(spec: Optimality, trace: Trace) -> Floats:
     """Return the largest violations [m/s]: pushing, complementarity; with friction cone, sliding.
 
     One NaN for a log without contacts or without what their rows asked for (`target`). UsageError
-    where the log has no /contacts at all, NotReportedError where an engine does not tell of them.
+    where the log has no /contacts at all, NotReportedError where an engine does not report them.
     """
     if trace.config.engine is not None and "target" not in (trace.contact.dtype.names or ()):
-        np.asarray(trace.contact["target"])  # NotReportedError: another engine does not tell it
+        np.asarray(trace.contact["target"])  # NotReportedError: another engine does not report it
     largest = [
         [np.max(one) for one in _violations(trace, contacts)]
         for contacts in map(_of_cones, contact_parts(trace))

@@ -13,12 +13,12 @@ taken, and why it stays within round-off where a run is right, stands in `lavend
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Final, Literal
 
-from pydantic import Field, Tag
+from pydantic import Field
 
 from lavendersim.quantities.model import ConfigModel
-from lavendersim.quantities.quantity import Quantity, either
+from lavendersim.quantities.quantity import Either, Quantity
 from lavendersim.quantities.readings import CONTACTS, POSES
 
 NONE: Final = "none"
@@ -31,29 +31,18 @@ DIVERGES: Final = "diverges"
 BEYOND_BOUNDS: Final = "beyond bounds: "
 
 
-def _form(value: Any, words: tuple[str, ...] = (NONE,)) -> str | None:
-    if isinstance(value, str):
-        return "off" if value in words else None
-    return None if value is None or isinstance(value, bool | dict | list | tuple) else "bound"
-
-
-def _form_of_depth(value: Any) -> str | None:
-    return _form(value, (NONE, DERIVED))
-
-
-_Off = Annotated[Literal["none"], Tag("off")]
+_Off = Literal["none"]
 Share = Annotated[
-    _Off | Annotated[float, Quantity("", above=0), Tag("bound")],
-    either("a number above 0 or none", _form),
+    _Off | Annotated[float, Quantity("", above=0)],
+    Either("a number above 0 or none", NONE, float),
 ]
 Depth = Annotated[
-    Annotated[Literal["none", "derived"], Tag("off")]
-    | Annotated[float, Quantity("m", minimum=0), Tag("bound")],
-    either("a number of 0 or more [m], derived or none", _form_of_depth),
+    Literal["none", "derived"] | Annotated[float, Quantity("m", minimum=0)],
+    Either("a number of 0 or more [m], derived or none", (NONE, DERIVED), float),
 ]
 Speed = Annotated[
-    _Off | Annotated[float, Quantity("m/s", above=0), Tag("bound")],
-    either("a number above 0 [m/s] or none", _form),
+    _Off | Annotated[float, Quantity("m/s", above=0)],
+    Either("a number above 0 [m/s] or none", NONE, float),
 ]
 
 

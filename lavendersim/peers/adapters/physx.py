@@ -1,7 +1,7 @@
 """Scenes on PhysX on the processor, through sapien's components; single precision.
 
-Sapien tells the normal impulse of a contact, and no friction. It has no cylinder but a polyhedron,
-which would be another shape.
+Sapien reports the normal impulse of a contact, and no friction. It has no cylinder but a
+polyhedron, which would be another shape.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Scenes on Rapier, one thread.
 
-Its Python tells no directions of friction, and of its default friction no impulse either.
+Its Python reports no directions of friction, and of its default friction no impulse either.
 """
 
 from __future__ import annotations

@@ -7,10 +7,10 @@ from dataclasses import fields
 import pytest
 
 from lavendersim.engine.effects import EFFECTS, Effect
-from lavendersim.engine.effects.effect import RowTerms
 from lavendersim.engine.record_layout import contact_dtype
 from lavendersim.engine.row_terms import row_terms
 from lavendersim.engine.spec import Spec
+from lavendersim.engine.terms import RowTerms
 
 # A field of the contact's record that each term is written in.
 WRITTEN_IN = {

@@ -20,7 +20,7 @@ from tests.engines import BOX
         ("mujoco-rk4", {"residual", "impulses", "momentum"}),
     ],
 )
-def test_a_check_is_left_where_an_engine_tells_too_little(engine: str, checks: set[str]) -> None:
+def test_a_check_is_left_where_an_engine_reports_too_little(engine: str, checks: set[str]) -> None:
     config = load_experiment_text(f"{BOX}engine: {engine}\n", "box.yaml").cells()[0].config
     log: Any = SimpleNamespace(config=config)
     assert set(unanswered(log)) == checks

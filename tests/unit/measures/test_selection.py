@@ -10,11 +10,11 @@ import pytest
 
 from lavendersim.measures.selection import (
     coordinates_text,
+    distinguishing_axes,
     group_by,
     same,
     select,
     selects,
-    telling_axes,
 )
 from lavendersim.measures.specs.selection import ANY
 
@@ -79,6 +79,6 @@ def test_coordinates_are_written_as_in_the_file() -> None:
 
 
 def test_axes_that_vary_or_were_named_tell_cells_apart() -> None:
-    assert telling_axes(CELLS, {}) == {"e", "solver"}
-    assert telling_axes(CELLS[:2], {}) == {"solver"}
-    assert telling_axes(CELLS[:2], {"e": 0.0, "absent": 1}) == {"e", "solver"}
+    assert distinguishing_axes(CELLS, {}) == {"e", "solver"}
+    assert distinguishing_axes(CELLS[:2], {}) == {"solver"}
+    assert distinguishing_axes(CELLS[:2], {"e": 0.0, "absent": 1}) == {"e", "solver"}

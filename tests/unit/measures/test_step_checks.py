@@ -42,7 +42,7 @@ def test_every_check_has_numbers_and_a_unit() -> None:
     assert set(UNITS) == set(CHECKS) == {*NUMBERS, "energy"}
 
 
-def test_a_speed_is_the_way_of_a_step_over_its_time() -> None:
+def test_a_speed_is_the_displacement_in_a_step_over_its_time() -> None:
     one = checked("speed")
     np.testing.assert_allclose(one.numbers, [0.0, 10.0, 20.0, 30.0, 40.0], rtol=1e-13)
     assert one.bodies(3) == "ball"

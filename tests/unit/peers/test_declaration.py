@@ -1,4 +1,4 @@
-"""What a variant tells is what its engine tells, unless it says otherwise."""
+"""What a variant reports is what its engine reports, unless it says otherwise."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from lavendersim.peers.catalogue import PEERS
 
 def test_a_variant_tells_what_its_engine_does_unless_it_says_so() -> None:
     peer = PEERS["mujoco"]
-    assert peer.reports("mujoco-stiff") == peer.tells
+    assert peer.reports("mujoco-stiff") == peer.reported
     assert peer.reports("mujoco-rk4") == ()
 
 

@@ -38,7 +38,7 @@ CASES = [
     (
         "duration: 1",
         "duration: 1\nrecord: {residuals: all}",
-        "8:10: residuals: MuJoCo tells no residuals",
+        "8:10: residuals: MuJoCo reports no residuals",
     ),
     ("duration: 1", "duration: 1\neffects: {friction: on}", "8:1: effects: MuJoCo has none"),
     ("engine: mujoco\n", "engine: bulet\n", '1:9: engine: no engine is called "bulet"'),

@@ -1,4 +1,4 @@
-"""A value chosen by its kind first is validated as pydantic's own union of all kinds would."""
+"""Values of one of several kinds: all made ready or only what is named, to the same outcome."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Union
 import pytest
 from pydantic import Field, TypeAdapter, ValidationError
 
-from lavendersim.quantities.chosen_kind import one_of
+from lavendersim.quantities.chosen_kind import NO_KIND, ByKind, kinds, one_of
 from lavendersim.quantities.model import ConfigModel
 
 
@@ -26,7 +26,8 @@ class Box(ConfigModel):
 
 
 KINDS: dict[str, type[ConfigModel]] = {"ball": Ball, "box": Box}
-OF_ALL: Any = Annotated[Union[Ball, Box], Field(discriminator="kind")]  # noqa: UP007
+OF_ALL: Any = Annotated[Union[Ball, Box], ByKind()]  # noqa: UP007
+BY_PYDANTIC: Any = Annotated[Union[Ball, Box], Field(discriminator="kind")]  # noqa: UP007
 CHOSEN: Any = one_of(KINDS)
 
 RIGHT = [
@@ -72,6 +73,27 @@ def test_errors_have_the_place_and_the_type_that_pydantic_gives(value: Any) -> N
     assert errors == outcome(OF_ALL, value)
     assert isinstance(errors, list)
     assert errors[0]["loc"][0] == "here"
+
+
+@pytest.mark.parametrize("value", WRONG, ids=repr)
+def test_errors_stand_where_those_of_pydantic_s_own_union_do(value: Any) -> None:
+    """Of what is no known kind there is one type of error, which lists the kinds."""
+    own, errors = outcome(BY_PYDANTIC, value), outcome(OF_ALL, value)
+    assert [one["loc"] for one in errors] == [one["loc"] for one in own]
+    for one, other in zip(errors, own, strict=True):
+        if one["type"] == NO_KIND:
+            assert one["ctx"] == {"kinds": "ball, box"}
+            assert other["type"].startswith(("union_tag", "model_attributes"))
+        else:
+            assert one["type"] == other["type"]
+
+
+def test_kinds_are_the_values_that_choose_a_model() -> None:
+    class Several(ConfigModel):
+        kind: Literal["one", "first"]
+
+    assert kinds(Several) == ("one", "first")
+    assert kinds(ConfigModel) == ()
 
 
 def test_the_context_reaches_the_model() -> None:

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import pytest
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from pydantic_core import PydanticCustomError
 
-from lavendersim.quantities.quantity import NumberOrFormula, Position, Quantity, Vector
+from lavendersim.quantities.quantity import Either, NumberOrFormula, Position, Quantity, Vector
+
+FORMS: TypeAdapter[Any] = TypeAdapter(
+    Annotated[
+        Literal["off"] | float | tuple[float, ...] | dict[str, float],
+        Either("off, a number, a list or a mapping", "off", float, tuple, dict),
+    ]
+)
 
 
 def refusal(quantity: Quantity, value: object) -> str:
@@ -92,3 +99,33 @@ def test_json_schema_has_bounds_and_lengths() -> None:
     schema = Placed.model_json_schema()["properties"]["place"]
     assert (schema["minItems"], schema["maxItems"]) == (3, 3)
     assert {"type": "number"} in schema["items"]["anyOf"]
+
+
+@pytest.mark.parametrize(
+    ("value", "read"),
+    [
+        ("off", "off"),
+        (2, 2.0),
+        (2.5, 2.5),
+        ([1.0, 2.0], (1.0, 2.0)),
+        ((1.0, 2.0), (1.0, 2.0)),
+        ({"one": 1.0}, {"one": 1.0}),
+    ],
+)
+def test_a_value_is_read_as_the_first_form_that_it_has(value: Any, read: Any) -> None:
+    assert FORMS.validate_python(value) == read
+
+
+@pytest.mark.parametrize("value", [True, None, "on", b"off"])
+def test_a_value_of_no_form_is_refused_by_what_all_forms_are(value: Any) -> None:
+    with pytest.raises(ValidationError) as refused:
+        FORMS.validate_python(value)
+    (error,) = refused.value.errors()
+    assert error["type"] == "form"
+    assert error["ctx"] == {"expected": "off, a number, a list or a mapping"}
+
+
+def test_what_has_a_form_is_refused_as_that_alone() -> None:
+    with pytest.raises(ValidationError) as refused:
+        FORMS.validate_python({"one": "x"})
+    assert [error["type"] for error in refused.value.errors()] == ["float_parsing"]

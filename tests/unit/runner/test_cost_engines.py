@@ -57,7 +57,7 @@ def test_errors_of_engines_are_those_of_their_integrators(costed: Costed) -> Non
 
 
 @needs("mujoco")
-def test_a_claim_on_what_an_engine_does_not_tell_fails_no_setting(costed: Costed) -> None:
+def test_a_claim_on_what_an_engine_does_not_report_fails_no_setting(costed: Costed) -> None:
     assert [row.failed for row in costed.table.rows] == [""] * len(costed.table.rows)
 
 
@@ -107,10 +107,10 @@ def test_without_a_choice_the_engine_is_the_configs() -> None:
 
 
 @needs("mujoco")
-def test_contacts_and_iterations_stand_beside_time_where_an_engine_tells_them(
+def test_contacts_and_iterations_stand_beside_time_where_an_engine_reports_them(
     costed: Costed,
 ) -> None:
-    """A ball in flight has none; RK4 tells of no contacts; efforts say what these are."""
+    """A ball in flight has none; RK4 reports no contacts; efforts say what these are."""
     table = costed.table
     reported = {row.engine: (row.contacts, row.iterations) for row in table.rows}
     assert reported["mujoco-rk4"] == (None, 0.0)

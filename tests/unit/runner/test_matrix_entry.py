@@ -160,7 +160,7 @@ def test_over_perturbed_starts_the_number_has_its_spread() -> None:
     assert math.isnan(entry_of("case", "engine", Ran(raw)).least)
 
 
-def test_what_an_engine_does_not_tell_of_its_steps_is_no_number() -> None:
+def test_what_an_engine_does_not_report_of_its_steps_is_no_number() -> None:
     one = with_counts(entry(verdict("stands a", True)), StepCounts(12.0, None))
     assert one.contacts == 12.0
     assert math.isnan(one.iterations)

@@ -17,11 +17,11 @@ from lavendersim.runner.other_engine import absent_topics
 from tests.engines import BALL, needs
 
 
-def test_topics_that_an_engine_does_not_tell_have_its_reason_and_others_the_plans() -> None:
+def test_topics_that_an_engine_does_not_report_have_its_reason_and_others_the_plans() -> None:
     planned = {"/contacts": "nothing can touch"}
     absent = absent_topics(planned, PEERS["mujoco"], ())
     assert absent["/contacts"] == "nothing can touch"
-    assert absent["/plot/force"] == absent["/residuals"] == "MuJoCo does not tell it"
+    assert absent["/plot/force"] == absent["/residuals"] == "MuJoCo does not report it"
     assert "/contacts" not in absent_topics({}, PEERS["mujoco"], ("impulse_n",))
 
 

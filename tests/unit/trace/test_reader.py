@@ -11,7 +11,8 @@ from sample import AS_WRITTEN, BODIES, CONFIG, METADATA, SCENE, run, write
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.trace import Block, Trace, TraceWriter, open_trace, reader
 from lavendersim.trace.layout import CHANNELS
-from lavendersim.trace.writer import UNTOLD
+from lavendersim.trace.schema import FORMER_NOT_REPORTED
+from lavendersim.trace.writer import NOT_REPORTED_COLUMNS
 from tests.made_cells import made_cell
 
 STEPS = 900
@@ -54,9 +55,13 @@ def test_contacts_are_kept_for_who_asks_again_unless_they_are_too_many(
     assert not asked_twice(open_trace(path))
 
 
-def test_parts_refuse_columns_that_the_engine_does_not_tell(tmp_path: Path, block: Block) -> None:
-    untold = {UNTOLD: {"/contacts.gamma": "it is a secret"}}
-    writer = TraceWriter(tmp_path / "a.mcap", CONFIG, AS_WRITTEN, METADATA | untold)
+@pytest.mark.parametrize("key", [NOT_REPORTED_COLUMNS, FORMER_NOT_REPORTED])
+def test_parts_refuse_columns_that_the_engine_does_not_report(
+    key: str, tmp_path: Path, block: Block
+) -> None:
+    """Logs of this version, and of those before."""
+    not_reported = {key: {"/contacts.gamma": "it is a secret"}}
+    writer = TraceWriter(tmp_path / "a.mcap", CONFIG, AS_WRITTEN, METADATA | not_reported)
     writer.append(block)
     writer.close("complete")
     trace = open_trace(tmp_path / "a.mcap")

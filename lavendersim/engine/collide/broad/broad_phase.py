@@ -15,7 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...compile import kernel
+from ...effects import has_hook
 from ...records import COMPOUND, I8, PAIR, PLANE, ROPE_END, Field, dtype
+from ...row_terms import row_terms
 from ...spec import Spec
 from ..rope import make_count_connections
 from .fat_bounds import FAT_BOUNDS, make_is_valid, make_place_bounds
@@ -107,7 +109,7 @@ def template_dtype(surface: list[Field]) -> np.dtype:
 
 def make_sort_leaves(spec: Spec):
     """Return `kernel(bodies, work) -> leaves`: bodies with bounds, sorted for the tree."""
-    compound, sleeps = spec.has("compound"), spec.has("sleeping")
+    compound, sleeps = has_hook(spec, "place_parts"), has_hook(spec, "update_sleeping")
     connects = spec.connects
 
     def sort_leaves(bodies, work):
@@ -166,7 +168,7 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
     body, and every other row has its own there. Pairs that nothing can push get no row. Rows of
     ropes and joints stay where they are, before all others; bodies that a joint joins are no pair.
     """
-    connects, joins = spec.connects, spec.has("joint")
+    connects, joins = spec.connects, row_terms(spec).bilateral
     count_connections: Any = make_count_connections(spec) if connects else None
     without_joined: Any = make_without_joined(spec) if joins else None
     is_valid, place_bounds, sort_leaves = (

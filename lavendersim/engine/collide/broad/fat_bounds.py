@@ -18,6 +18,7 @@ from __future__ import annotations
 from math import sqrt
 
 from ...compile import kernel
+from ...effects import has_hook
 from ...records import COMPOUND, F8, PLANE, TOUCHING, Field
 from ...spec import Spec
 from ..shapes import make_half_extents
@@ -45,7 +46,7 @@ FAT_BOUNDS: list[Field] = [
 def make_is_valid(spec: Spec):
     """Return `kernel(bodies, velocities, params, fat_bounds) -> whether the list is valid`."""
     half_extents, reach = make_half_extents(spec), make_reach(spec)
-    compound = spec.has("compound")
+    compound = has_hook(spec, "place_parts")
 
     def is_valid(bodies, velocities, params, fat_bounds):
         for i in range(bodies.shape[0]):
@@ -76,7 +77,7 @@ def make_is_valid(spec: Spec):
 def make_place_bounds(spec: Spec):
     """Return `kernel(bodies, velocities, params, fat_bounds)`: write those of every body."""
     half_extents, reach = make_half_extents(spec), make_reach(spec)
-    compound = spec.has("compound")
+    compound = has_hook(spec, "place_parts")
 
     def place_bounds(bodies, velocities, params, fat_bounds):
         fast, count = 0, bodies.shape[0]

@@ -15,11 +15,12 @@ from math import sqrt
 
 from ...compile import kernel
 from ...spec import Spec
+from ...step_terms import step_terms
 
 
 def make_reach(spec: Spec):
     """Return `kernel(body, velocity, params) -> reach [m]`; a body with parts has its own bound."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def reach(body, velocity, params):
         vx, vy, vz = velocity.vx, velocity.vy, velocity.vz

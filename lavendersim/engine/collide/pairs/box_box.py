@@ -23,6 +23,7 @@ import numpy as np
 
 from ...compile import inner, kernel, separate
 from ...records import TOUCHING
+from ...step_terms import step_terms
 from ...vectors import Vec3, cross, divided, dot, minus, negative, plus_scaled
 from ..convex.gjk import APART, make_gjk
 from ..convex.separation import FACE_SHARE
@@ -201,7 +202,7 @@ def clip_faces(b_is_better, axis_a, axis_b, margin, scratch):
 def make(spec):
     """Return `kernel(a, b, margin, scratch) -> count`, which writes `scratch.manifold`."""
     # Speculative contacts: an axis that separates most bounds the distance from below only.
-    speculative = spec.has("speculative")
+    speculative = step_terms(spec).ahead
     gjk: Any = make_gjk(spec) if speculative else None
 
     def box_box(a, b, margin, scratch):

@@ -11,6 +11,7 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt
 
 from ...compile import kernel
+from ...step_terms import step_terms
 from ...vectors import Vec3, dot, from_body, into_body, negative, position
 from ..manifold.features import FACE_COSINE
 from ..manifold.point import LEFT_OUT, WHOLE, place, write_manifold
@@ -68,7 +69,7 @@ def make_put_rim(spec):
 def make(spec):
     """Return `kernel(plane, cylinder, margin, scratch) -> count`; it writes `scratch.manifold`."""
 
-    overlooks, put_rim = spec.has("overlooked_points"), make_put_rim(spec)
+    overlooks, put_rim = step_terms(spec).overlooks, make_put_rim(spec)
 
     def cylinder_plane(plane, cylinder, margin, scratch):
         n, origin = Vec3(plane.hx, plane.hy, plane.hz), Vec3(0.0, 0.0, 0.0)

@@ -16,6 +16,7 @@ from ...rotation import inertia_times
 from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
+from ...step_terms import step_terms
 from .envelope import DOF, OF_A, OF_B, T1, T2, WX, WY, WZ, factorise, solve_factorised
 from .matrix import make_assemble
 from .response import make_fill_rows, make_projected_impulse, make_stiffness
@@ -38,7 +39,7 @@ from .torques import (
 
 def make_assemble_mass(spec: Spec):
     """Return `kernel(bodies, size, workspace)`: masses and world inertias by position."""
-    turns = spec.has("rotation")
+    turns = step_terms(spec).turns
 
     def assemble_mass(bodies, size, workspace):
         for p in range(size):

@@ -8,10 +8,11 @@ from typing import Annotated, Any, ClassVar, Literal
 import pytest
 from pydantic import Field, ValidationError
 
-from lavendersim.experiment.checks.messages import locate, report_errors
+from lavendersim.experiment.checks.messages import fields, locate, report_errors
 from lavendersim.experiment.text.node import Node
 from lavendersim.experiment.text.parse import parse
 from lavendersim.experiment.text.report import Report
+from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.model import ConfigModel
 from tests.marked_config import marked_places
 
@@ -32,7 +33,7 @@ class Things(ConfigModel):
     on: bool = False
     colour: Literal["red", "green"] = "red"
     few: tuple[int, ...] = Field(default=(), min_length=1, max_length=3)
-    shape: Annotated[Round | Square, Field(discriminator="kind")] | None = None
+    shape: Annotated[Round | Square, ByKind()] | None = None
     inner: Square | None = None
 
 
@@ -99,3 +100,11 @@ def test_a_location_ends_where_the_file_does() -> None:
     path, node = locate(root, ("a", "tag", "b", 1, "int"))
     assert path == ("a", "b", 1)
     assert node.number == 2
+
+
+def test_fields_stand_under_their_aliases() -> None:
+    class Span(ConfigModel):
+        begin: float = Field(alias="from")
+        end: float = 0.0
+
+    assert list(fields(Span)) == ["from", "end"]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from pydantic import TypeAdapter, ValidationError
 
-from lavendersim.experiment.models.overhead import all_or_named
+from lavendersim.experiment.models.overhead import EffectNames
 from tests.marked_config import assert_refused, config, refusals, scene
 
 FOUND = "overhead: expected one cell without events and constant forces, found"
@@ -52,14 +53,12 @@ def test_what_is_timed_begins_before_the_end() -> None:
 
 
 def test_all_or_a_list_of_names() -> None:
-    assert [all_or_named(value) for value in ("all", ["a"], ("a",), "some", None, 3)] == [
-        "all",
-        "named",
-        "named",
-        None,
-        None,
-        None,
-    ]
+    names: TypeAdapter[object] = TypeAdapter(EffectNames)
+    for value in ("all", "required", ("drag",)):
+        assert names.validate_python(value) == value
+    for value in ("some", None, 3, ()):
+        with pytest.raises(ValidationError):
+            names.validate_python(value)
     assert_refused(
         config(overhead="{effects: §drag}"),
         'effects: expected all, required, or a list of effects, found the text "drag"',

@@ -40,6 +40,11 @@ def followed(path: str) -> tuple[object, str]:
         ("scene.surfaces.wood.friction", ("scene", "surfaces", "wood", "friction")),
         ("events.0.velocity.1", ("events", 0, "velocity", 1)),
         ("numerics.timestep", ("numerics", "timestep")),
+        ("scene.bodies.ball.shape.kind", ("scene", "bodies", "ball", "shape", "kind")),
+        ("scene.bodies.ball.surface", ("scene", "bodies", "ball", "surface")),
+        ("scene.bodies.ball.surface.friction", ("scene", "bodies", "ball", "surface", "friction")),
+        ("scene.bodies.ball.drag.linear", ("scene", "bodies", "ball", "drag", "linear")),
+        ("scene.bodies.ball.velocity", ("scene", "bodies", "ball", "velocity")),
     ],
 )
 def test_a_path_leads_to_its_value(path: str, steps: tuple[str | int, ...]) -> None:
@@ -53,6 +58,15 @@ def test_a_path_leads_to_its_value(path: str, steps: tuple[str | int, ...]) -> N
         ("scene.bodies.ball", "scene.bodies.ball is a mapping; name one value inside it"),
         ("scene.bodies.ball.maas", 'did you mean "mass"?'),
         ("duration.length", 'duration is a single value, there is no "length" in it'),
+        ("events.1.at", 'events has items 0 to 0, there is no "1"'),
+        ("scene.forces.0.force", "scene.forces is no list in this file; write it, then"),
+        ("scene.bodies.ball.velocity.0", "velocity is no list in this file; write it, then"),
+        ("scene.bodies.cube.mass", 'there is no "cube" in scene.bodies; valid here: ball'),
+        ("scene.gravity.degrees", "write it as a mapping to sweep degrees"),
+        ("scene.bodies.ball.release.phase", "release is not written in this file; write it"),
+        ("scene.shapes.brick.size", 'no "brick" in scene.shapes; nothing is written there'),
+        ("scene.surfaces", "scene.surfaces is a mapping; name one value inside it"),
+        ("scene.bodies.ball.shape.kind.x", 'is a single value, there is no "x" in it'),
     ],
 )
 def test_a_path_that_leads_nowhere_says_why(path: str, words: str) -> None:

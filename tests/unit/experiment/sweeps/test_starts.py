@@ -6,7 +6,7 @@ import pytest
 
 from lavendersim.experiment import load_experiment_text
 from lavendersim.experiment.cell import alike
-from lavendersim.experiment.sweeps.starts import _says_start
+from lavendersim.experiment.sweeps.starts import _is_of_start
 
 BALL = ("scene", "bodies", "ball")
 
@@ -26,7 +26,7 @@ BALL = ("scene", "bodies", "ball")
     ],
 )
 def test_paths_that_say_how_a_body_starts(path: tuple[str | int, ...], start: bool) -> None:
-    assert _says_start(path) is start
+    assert _is_of_start(path) is start
 
 
 SWEPT = """
