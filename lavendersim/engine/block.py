@@ -145,6 +145,7 @@ def make_complete_block(spec: Spec):
     """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3."""
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
     swept, shifted = spec.has("fast_bodies"), row_terms(spec).shifted
+    stretched, stretch_tangents = made_once(spec, "stretch_tangents")
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi
@@ -160,6 +161,8 @@ def make_complete_block(spec: Spec):
             contact.rby -= contact.tangential_y
             contact.rbz -= contact.tangential_z
         set_tangents(contact)
+        if stretched:
+            stretch_tangents(contact, body_a, body_b, pair)
         contact.mu = pair.friction
         contact.lambda_1, contact.lambda_2 = 0.0, 0.0
         x, y, z = block_response(contact, va, vb, contact.nx, contact.ny, contact.nz)

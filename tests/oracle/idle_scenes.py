@@ -183,6 +183,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "contact_torque": ("spinning balls",),
     "frictionless_contact": ("frictional balls",),
     "friction": ("balls", "boxes"),
+    "anisotropic_friction": ("frictional balls",),
     "torsional_friction": ("frictional balls",),
     "rolling_friction": ("frictional balls",),
     "surface_velocity": ("frictional balls",),

@@ -20,6 +20,7 @@ AT_WORK = {
         *("drag", "kinematic", "torsional_friction", "rolling_friction", "surface_velocity"),
         "cohesion",
     ),
+    "effects/anisotropic_friction.yaml": ("anisotropic_friction",),
     "effects/falling_restitution.yaml": ("falling_restitution",),
     "effects/pile.yaml": ("broad_phase", "fast_bodies", "packed_sweeps"),
     "effects/joint.yaml": ("joint",),

@@ -54,9 +54,10 @@ def make_start_step(spec: Spec) -> Kernel:
 
 def make_prepare(spec: Spec) -> Kernel:
     """Return `kernel(contact, va, vb, pair, params)`: mu at the slip that the step begins with."""
+    from ..row_terms import row_terms
     from . import has_hook
 
-    moving_surface = has_hook(spec, "surface_velocity")
+    moving_surface, stretched = has_hook(spec, "surface_velocity"), row_terms(spec).stretched
 
     def set_friction(contact, va, vb, pair, params):
         if pair.static_friction > pair.friction and pair.friction > 0.0:
@@ -77,7 +78,10 @@ def make_prepare(spec: Spec) -> Kernel:
             if moving_surface:
                 v_1 += contact.surface_1
                 v_2 += contact.surface_2
-            ratio = (v_1 * v_1 + v_2 * v_2) / (pair.stribeck_velocity * pair.stribeck_velocity)
+            squared = v_1 * v_1 + v_2 * v_2
+            if stretched:
+                squared = v_1 * v_1 * contact.ease_1 + v_2 * v_2 * contact.ease_2
+            ratio = squared / (pair.stribeck_velocity * pair.stribeck_velocity)
             contact.mu = pair.friction + (pair.static_friction - pair.friction) / (1.0 + ratio)
 
     return kernel(set_friction, spec)
