@@ -107,6 +107,7 @@ def make_look(spec: Spec) -> Any:
     manifold = make_manifold(spec, spec.shape_pairs)
     compound, place_parts = made_once(spec, "place_parts")
     swept, stay = spec.has("fast_bodies"), make_stay(spec)
+    marks, mark_middle = made_once(spec, "mark_middle")
     ordered, nearest = spec.has("impact_order"), make_nearest(spec)
     overlooks, ropes = spec.has("overlooked_points"), spec.has("rope")
     arms = row_terms(spec).bilateral and row_terms(spec).levers
@@ -163,6 +164,8 @@ def make_look(spec: Spec) -> Any:
                     if swept:
                         contact.tangential_x, contact.tangential_y = 0.0, 0.0
                         contact.tangential_z = 0.0
+            if marks:
+                mark_middle(contacts, first, last, row, False)
             first = last
         if overlooks:
             scratch.manifold.reduction[WHOLE] = 0

@@ -184,6 +184,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "frictionless_contact": ("frictional balls",),
     "friction": ("balls", "boxes"),
     "anisotropic_friction": ("frictional balls",),
+    "contact_patch": ("frictional boxes",),
     "torsional_friction": ("frictional balls",),
     "rolling_friction": ("frictional balls",),
     "surface_velocity": ("frictional balls",),

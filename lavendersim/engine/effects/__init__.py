@@ -37,6 +37,7 @@ NAMES: Final = (
     "contact_torque",
     "frictionless_contact",
     "friction",
+    "contact_patch",
     "anisotropic_friction",
     "torsional_friction",
     "rolling_friction",

@@ -104,6 +104,7 @@ class Hooks:
     find_pairs: Maker | None = None  # the broad phase, see `collide.broad.broad_phase`
     is_still: Maker | None = None  # (body) -> whether it cannot move in this step
     wake: Maker | None = None  # (bodies, contacts, count, params) -> whether a body woke
+    mark_middle: Maker | None = None  # (contacts, first, last, pair, found), of a manifold
     stretch_tangents: Maker | None = None  # (contact, body_a, body_b, pair): units of its tangents
     surface_velocity: Maker | None = None  # (contact, body_a, body_b), once its tangents are set
     complete_torsion: Maker | None = None  # (contact, pair, x, y, z): response to a unit psi_n
@@ -190,6 +191,7 @@ class RowTerms:
     bilateral: bool = False  # some of a normal have no cone: `bilateral` is 1, either sign [N s]
     bounded: bool = False  # some of those, motors, have a largest impulse, `most`: see `motor`
     stopped: bool = False  # some of a normal are stops of joints: `stop` is 1
+    coupled: bool = False  # an impulse p turns about n by e . p beside its lever: `patch` [m]
     stretched: bool = False  # tangents of other lengths than 1, whose squares' inverses are `ease`
     shifted: bool = False  # surface_1, surface_2 add to the slip [m/s]
 

@@ -57,7 +57,8 @@ def make_prepare(spec: Spec) -> Kernel:
     from ..row_terms import row_terms
     from . import has_hook
 
-    moving_surface, stretched = has_hook(spec, "surface_velocity"), row_terms(spec).stretched
+    moving_surface, terms = has_hook(spec, "surface_velocity"), row_terms(spec)
+    stretched, coupled = terms.stretched, terms.coupled
 
     def set_friction(contact, va, vb, pair, params):
         if pair.static_friction > pair.friction and pair.friction > 0.0:
@@ -73,6 +74,13 @@ def make_prepare(spec: Spec) -> Kernel:
                 vb.start_vz + vb.start_wx * contact.rby - vb.start_wy * contact.rbx
                 - va.start_vz - va.start_wx * contact.ray + va.start_wy * contact.rax
             )  # fmt: skip
+            if coupled:
+                spin = contact.nx * (vb.start_wx - va.start_wx)
+                spin += contact.ny * (vb.start_wy - va.start_wy)
+                spin += contact.nz * (vb.start_wz - va.start_wz)
+                x += spin * contact.patch_x
+                y += spin * contact.patch_y
+                z += spin * contact.patch_z
             v_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
             v_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
             if moving_surface:
