@@ -186,6 +186,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "anisotropic_friction": ("frictional balls",),
     "contact_patch": ("frictional boxes",),
     "torsional_friction": ("frictional balls",),
+    "tangential_restitution": ("slow frictional impacts",),
     "rolling_friction": ("frictional balls",),
     "surface_velocity": ("frictional balls",),
     "spring": ("frictional balls",),

@@ -56,6 +56,7 @@ NAMES: Final = (
     "fast_bodies",
     "falling_restitution",
     "restitution",
+    "tangential_restitution",
     "capture_in_sweeps",
     "impact_energy",
     "stabilisation",

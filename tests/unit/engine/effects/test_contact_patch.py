@@ -10,8 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interpreted import interpreted, records
 from interpreted_steps import interpreted_bench
 from laboratory import Bench, body, box, plane, planned, resolved, sphere
+
+from lavendersim.engine.block import make_slip_velocity
+from lavendersim.engine.solvers.newton.response import make_fill_rows
 
 G, DT, MU, RADIUS, HIGH = 9.81, 1.0 / 240.0, 0.3, 0.1, 0.04
 EVEN = 2.0 / 3.0
@@ -125,6 +129,30 @@ def test_other_solvers_find_the_same_motion(solver: str) -> None:
     np.testing.assert_allclose(found.velocity[1], exact.velocity[1], atol=2e-9)
     spins = [bench.engine.velocities["wz"][1] for bench in (found, exact)]
     assert spins[0] == pytest.approx(spins[1], abs=2e-9 / 0.15)
+
+
+def test_rows_of_newtons_method_are_those_of_the_slip() -> None:
+    """J v is the slip of any velocities, couples included, whichever body they are of."""
+    spec = puck(EVEN).spec
+    bench = puck(EVEN, spin=1.0)
+    bench.run(1)
+    contacts = records(bench.engine.state.contacts)
+    draw = np.random.default_rng(7)
+    moving = records(bench.engine.velocities.copy())
+    for row in range(2):
+        for name in ("vx", "vy", "vz", "wx", "wy", "wz"):
+            setattr(moving[row], name, float(draw.normal()))
+    fill, slip = interpreted(make_fill_rows(spec)), interpreted(make_slip_velocity(spec))
+    contact, rows = contacts[0], np.zeros((6, 6))
+    assert abs(contact.patch_x) + abs(contact.patch_y) > 0.0
+    fill(contact, rows)
+    a, b = (
+        np.array([getattr(moving[k], name) for name in ("vx", "vy", "vz", "wx", "wy", "wz")])
+        for k in (contact.a, contact.b)
+    )
+    expected = slip(contact, moving[contact.a], moving[contact.b])
+    # A dozen products of numbers of about 1.
+    np.testing.assert_allclose(rows[:3] @ a + rows[3:] @ b, expected, atol=30 * ROUND_OFF)
 
 
 def test_two_free_bodies_keep_their_momentum() -> None:
