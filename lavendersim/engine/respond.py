@@ -56,6 +56,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     solve = make_solve(spec)
     predicts, predict_impacts = made_once(spec, "predict_impacts")
     reverses, reverse_slip = made_once(spec, "reverse_slip")
+    reverses = reverses and predicts  # idle where no law of impacts is beside it
     warms, match_contacts = made_once(spec, "match")
     _, store_contacts = made_once(spec, "store")
     apply_start: Any = make_apply_start(spec) if warms else None

@@ -7,7 +7,7 @@ the mean of the points that are closed, and the normal one where it is:
     slip = v_t + e (n . omega),   psi_n = e . p,   e = (1 - q) n x d
 q = 2/3 is even pressure over a disc, 3 pi/16 that of Hertz, 1 the points themselves. Slip and
 angular impulse have the same e, so each point keeps Coulomb's law and maximum dissipation with a
-lever of its own, at any slip and spin together, and what is held is held by the same law.
+lever of its own, at any slip and spin together, and sticks by the same law.
 
 Forces of combined slip and spin are those of a ring of radius q R. Of even pressure over the disc,
     F(v, omega), T(v, omega) = gradient of mu N mean(|v + omega x r|)

@@ -152,13 +152,13 @@ def test_the_way_to_a_stop_in_closed_form_is_its_integral() -> None:
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.25 * pi, 1.2, 0.5 * pi])
-def test_a_slope_is_held_up_to_the_ellipse(angle: float) -> None:
-    """F^-1 d has length 1 / tan of the slope at which d, its direction, is no longer held."""
+def test_a_block_sticks_up_to_the_ellipse(angle: float) -> None:
+    """F^-1 d has length 1 / tan of the slope at which d, its direction, no longer sticks."""
     q = 2.0
     limit = 1.0 / sqrt((cos(angle) / MU) ** 2 + (sin(angle) / (q * MU)) ** 2)
-    held = block(q, angle, slope=0.999 * limit)
-    held.run(6)
-    np.testing.assert_allclose(held.velocity[1], 0.0, atol=6 * LEFT)
+    sticks = block(q, angle, slope=0.999 * limit)
+    sticks.run(6)
+    np.testing.assert_allclose(sticks.velocity[1], 0.0, atol=6 * LEFT)
     slides = block(q, angle, slope=1.01 * limit)
     slides.run(6)
     # At the limit itself it moves along the ellipse's normal where d is, F^-2 d.
