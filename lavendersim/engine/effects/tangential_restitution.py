@@ -67,7 +67,7 @@ EFFECT = Effect(
     name="tangential_restitution",
     decide=decide,
     per="contact",
-    needs=("friction", "impact_time"),
+    needs=("friction",),
     excludes=excludes,
     row=RowTerms(shifted=True),
     surface_keys=(
