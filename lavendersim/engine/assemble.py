@@ -104,6 +104,9 @@ def _side(
     terms = row_terms(spec)
     if terms.frictional:
         levers = np.cross(_vectors(contacts, f"r{name}")[:, None, :], frames)
+        if terms.coupled:
+            turned = np.einsum("cil,cl->ci", frames, _vectors(contacts, "patch_"))
+            levers = levers + turned[:, :, None] * _vectors(contacts, "n")[:, None, :]
         turns = np.einsum("ckl,cil->cik", _inverse_inertia(velocities[body]), levers)
     if terms.levers and terms.frictionless:
         frictionless = _frictional(spec, contacts) == 0.0

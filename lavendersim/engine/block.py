@@ -15,7 +15,7 @@ from .effects import made_once
 from .row_terms import row_terms
 from .spec import Spec
 from .tangents import first_tangent, second_tangent
-from .vectors import Vec3, cross
+from .vectors import Vec3, cross, dot, plus_scaled
 
 t1_of, t2_of = inner(first_tangent), inner(second_tangent)
 
@@ -72,6 +72,43 @@ def largest_response(contact):
     return 0.5 * (k_n + k_t) + sqrt(half_gap * half_gap + across)
 
 
+@inner
+def coupled_response(v, inv_m, r, p, couple):
+    """The same as `point_response` of a contact with a couple (n, e): also turned by e . p."""
+    n, e = couple
+    turn = plus_scaled(cross(r, p), dot(e, p), n)
+    wx, wy, wz = inertia_response(v, turn.x, turn.y, turn.z)
+    spin = wx * n.x + wy * n.y + wz * n.z
+    return Vec3(
+        inv_m * p.x + wy * r.z - wz * r.y + spin * e.x,
+        inv_m * p.y + wz * r.x - wx * r.z + spin * e.y,
+        inv_m * p.z + wx * r.y - wy * r.x + spin * e.z,
+    )
+
+
+@inner
+def couple_of(contact):
+    """Return n and e of a contact whose friction acts elsewhere than at its point."""
+    n = Vec3(contact.nx, contact.ny, contact.nz)
+    return n, Vec3(contact.patch_x, contact.patch_y, contact.patch_z)
+
+
+def make_block_response(spec: Spec):
+    """Return `kernel(contact, va, vb, x, y, z) -> (x, y, z)`, see `block_response`."""
+    if not row_terms(spec).coupled:
+        return block_response
+
+    def coupled_block_response(contact, va, vb, x, y, z):
+        p, couple = Vec3(x, y, z), couple_of(contact)
+        ra = Vec3(contact.rax, contact.ray, contact.raz)
+        rb = Vec3(contact.rbx, contact.rby, contact.rbz)
+        a = coupled_response(va, contact.inv_m_a, ra, p, couple)
+        b = coupled_response(vb, contact.inv_m_b, rb, p, couple)
+        return a.x + b.x, a.y + b.y, a.z + b.z
+
+    return kernel(coupled_block_response, spec)
+
+
 def make_relative_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> (x, y, z)`, of B's surface relative to A's [m/s]."""
     if not row_terms(spec).frictional:
@@ -87,7 +124,17 @@ def make_relative_velocity(spec: Spec):
             - va.vz - va.wx * contact.ray + va.wy * contact.rax,
         )  # fmt: skip
 
-    return kernel(relative_velocity, spec)
+    at_point = kernel(relative_velocity, spec)
+    if not row_terms(spec).coupled:
+        return at_point
+
+    def coupled_velocity(contact, va, vb):
+        x, y, z = at_point(contact, va, vb)
+        spin = contact.nx * (vb.wx - va.wx)
+        spin += contact.ny * (vb.wy - va.wy) + contact.nz * (vb.wz - va.wz)
+        return x + spin * contact.patch_x, y + spin * contact.patch_y, z + spin * contact.patch_z
+
+    return kernel(coupled_velocity, spec)
 
 
 def make_slip_velocity(spec: Spec):
@@ -138,13 +185,34 @@ def make_apply_vector(spec: Spec):
             vb.wy += y
             vb.wz += z
 
-    return kernel(apply_vector, spec)
+    at_point = kernel(apply_vector, spec)
+    if not row_terms(spec).coupled:
+        return at_point
+
+    def apply_coupled(contact, va, vb, px, py, pz):
+        at_point(contact, va, vb, px, py, pz)
+        turn = contact.patch_x * px + contact.patch_y * py + contact.patch_z * pz
+        nx, ny, nz = contact.nx * turn, contact.ny * turn, contact.nz * turn
+        if contact.inv_m_a > 0.0:
+            x, y, z = inertia_response(va, nx, ny, nz)
+            va.wx -= x
+            va.wy -= y
+            va.wz -= z
+        if contact.inv_m_b > 0.0:
+            x, y, z = inertia_response(vb, nx, ny, nz)
+            vb.wx += x
+            vb.wy += y
+            vb.wz += z
+
+    return kernel(apply_coupled, spec)
 
 
 def make_complete_block(spec: Spec):
     """Return `kernel(contact, body_a, body_b, va, vb, pair) -> k_n`: frame, levers and the 3x3."""
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
     swept, shifted = row_terms(spec).swept, row_terms(spec).shifted
+    stretched, stretch_tangents = made_once(spec, "stretch_tangents")
+    response = make_block_response(spec)
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi
@@ -160,16 +228,18 @@ def make_complete_block(spec: Spec):
             contact.rby -= contact.tangential_y
             contact.rbz -= contact.tangential_z
         set_tangents(contact)
+        if stretched:
+            stretch_tangents(contact, body_a, body_b, pair)
         contact.mu = pair.friction
         contact.lambda_1, contact.lambda_2 = 0.0, 0.0
-        x, y, z = block_response(contact, va, vb, contact.nx, contact.ny, contact.nz)
+        x, y, z = response(contact, va, vb, contact.nx, contact.ny, contact.nz)
         k_n = contact.nx * x + contact.ny * y + contact.nz * z
         contact.k_n1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
         contact.k_n2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
-        x, y, z = block_response(contact, va, vb, contact.t1x, contact.t1y, contact.t1z)
+        x, y, z = response(contact, va, vb, contact.t1x, contact.t1y, contact.t1z)
         k_11 = contact.t1x * x + contact.t1y * y + contact.t1z * z
         k_12 = contact.t2x * x + contact.t2y * y + contact.t2z * z
-        x, y, z = block_response(contact, va, vb, contact.t2x, contact.t2y, contact.t2z)
+        x, y, z = response(contact, va, vb, contact.t2x, contact.t2y, contact.t2z)
         k_22 = contact.t2x * x + contact.t2y * y + contact.t2z * z
         scale = 1.0 / (k_11 * k_22 - k_12 * k_12)
         contact.i_11, contact.i_12, contact.i_22 = k_22 * scale, -k_12 * scale, k_11 * scale

@@ -108,6 +108,7 @@ def make_look(spec: Spec) -> Any:
     swept, stay = row_terms(spec).swept, make_stay(spec)
     ordered, nearest = step_terms(spec).ordered_impacts, make_nearest(spec)
     overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
+    marks, mark_middle = made_once(spec, "mark_middle")
     arms = row_terms(spec).bilateral and row_terms(spec).levers
 
     def look(state, count, poses, workspace):
@@ -162,6 +163,8 @@ def make_look(spec: Spec) -> Any:
                     if swept:
                         contact.tangential_x, contact.tangential_y = 0.0, 0.0
                         contact.tangential_z = 0.0
+            if marks:
+                mark_middle(contacts, first, last, row, False)
             first = last
         if overlooks:
             scratch.manifold.reduction[WHOLE] = 0

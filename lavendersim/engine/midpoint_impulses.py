@@ -56,12 +56,16 @@ def make_go_on(spec: Spec) -> Any:
     """Return `kernel(contact, impulse)`: its part in the tangent plane of now; none is applied."""
     terms = row_terms(spec)
     friction, torsional, rolling = terms.frictional, terms.torsional, terms.rolling
+    stretched = terms.stretched
 
     def go_on(contact, old):
         contact.lambda_n = old.n
         if friction:
             contact.lambda_1 = contact.t1x * old.x + contact.t1y * old.y + contact.t1z * old.z
             contact.lambda_2 = contact.t2x * old.x + contact.t2y * old.y + contact.t2z * old.z
+            if stretched:
+                contact.lambda_1 *= contact.ease_1
+                contact.lambda_2 *= contact.ease_2
         # What begins without a push begins without torque: neither is applied.
         if torsional:
             if old.n > 0.0:

@@ -143,7 +143,7 @@ def make_begin_slip(spec: Spec) -> Any:
     """
     if not row_terms(spec).frictional:
         return None
-    relative_velocity = make_relative_velocity(spec)
+    relative_velocity, stretched = make_relative_velocity(spec), row_terms(spec).stretched
 
     def begin_slip(contacts, count, velocities, motion):
         turned = False
@@ -153,6 +153,8 @@ def make_begin_slip(spec: Spec) -> Any:
             v = relative_velocity(contact, velocities[contact.a], velocities[contact.b])
             dx, dy, dz = v[0] - x, v[1] - y, v[2] - z
             one, two = contact.surface_1, contact.surface_2
+            if stretched:
+                one, two = one * contact.ease_1, two * contact.ease_2
             x += contact.t1x * one + contact.t2x * two
             y += contact.t1y * one + contact.t2y * two
             z += contact.t1z * one + contact.t2z * two

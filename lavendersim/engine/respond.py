@@ -56,6 +56,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     shuffle: Any = ordering.make_shuffle(spec) if shuffles else None
     solve = make_solve(spec)
     predicts, predict_impacts = made_once(spec, "predict_impacts")
+    reverses, reverse_slip = made_once(spec, "reverse_slip")
+    reverses = reverses and predicts  # idle where no law of impacts is beside it
     warms, match_contacts = made_once(spec, "match")
     _, store_contacts = made_once(spec, "store")
     apply_start: Any = make_apply_start(spec) if warms else None
@@ -113,6 +115,12 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         if predicts:
             if predicted:
                 predict_impacts(contacts, count, motion, params)
+        if reverses:
+            for c in range(count):
+                contact = contacts[c]
+                if contact.is_impact == 1:
+                    va, vb = velocities[contact.a], velocities[contact.b]
+                    reverse_slip(contact, pairs[contact.pair], va, vb)
         if centred:
             for c in range(count):
                 lasting(contacts[c], velocities, motion, params)

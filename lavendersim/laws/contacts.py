@@ -26,8 +26,9 @@ _GEOMETRY = {
     *("broad_phase", "compound", "compliance", "contact_torque", "external_force", "friction"),
     *("kinematic", "restitution", "rotation", "static_friction", "surface_velocity"),
 }
-# Impulses of these are in no pose and no velocity, or they are no contact of three numbers.
+# Impulses of these are in no pose and no velocity, or they have no round cone of three numbers.
 _UNKNOWN = (
+    *("anisotropic_friction", "contact_patch", "tangential_restitution"),
     *("cohesion", "drag", "joint", "rolling_friction", "rope", "spring"),
     *("torsional_friction", "varying_force"),
 )

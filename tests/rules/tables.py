@@ -31,6 +31,7 @@ SECTIONS = {
         *("joint_stop", "motor"),
         *("stabilisation", "compliance", "restitution", "surface_velocity", "capture_in_sweeps"),
         *("cohesion", "contact_spring", "static_friction", "falling_restitution"),
+        *("anisotropic_friction", "contact_patch", "tangential_restitution"),
     ),
     "impacts-at-the-surface": ("impact_time", "impact_energy"),
     "impacts-in-order": ("impact_order", "pairwise_impacts", "sliding_stops", "overlooked_points"),

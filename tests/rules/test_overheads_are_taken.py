@@ -20,6 +20,8 @@ AT_WORK = {
         *("drag", "kinematic", "torsional_friction", "rolling_friction", "surface_velocity"),
         "cohesion",
     ),
+    "effects/anisotropic_friction.yaml": ("anisotropic_friction",),
+    "effects/contact_patch.yaml": ("contact_patch",),
     "effects/falling_restitution.yaml": ("falling_restitution",),
     "effects/pile.yaml": ("broad_phase", "fast_bodies", "packed_sweeps"),
     "effects/joint.yaml": ("joint",),
@@ -32,6 +34,7 @@ AT_WORK = {
         *("gravity", "friction", "warm_start", "projection", "step_log", "contact_log"),
     ),
     "effects/static_friction.yaml": ("gyroscopic", "static_friction"),
+    "effects/tangential_restitution.yaml": ("tangential_restitution",),
     "effects/varying_force.yaml": ("varying_force",),
 }
 FORCES = "constant forces begin and end between steps, and interrupt the steps that are timed"

@@ -107,6 +107,7 @@ def make(spec: Spec):
     bounded, stopped = row_terms(spec).bounded, row_terms(spec).stopped
     sleeps, still = made_once(spec, "is_still")
     overlooks = step_terms(spec).overlooks
+    marks, mark_middle = made_once(spec, "mark_middle")
     note_left_out: Any = make_note_left_out(spec) if overlooks else None
 
     def narrow_phase(state, listed, workspace, dt):
@@ -180,6 +181,8 @@ def make(spec: Spec):
                     contact.tangential_y = until_impact * (d.y - along * n.y)
                     contact.tangential_z = until_impact * (d.z - along * n.z)
                 total += 1
+            if marks:
+                mark_middle(contacts, total - count, total, pairs[p], True)
         if overlooks:
             reduction[WHOLE] = 0
         return total

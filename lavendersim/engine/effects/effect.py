@@ -105,6 +105,8 @@ class Hooks:
     find_pairs: Maker | None = None  # the broad phase, see `collide.broad.broad_phase`
     is_still: Maker | None = None  # (body) -> whether it cannot move in this step
     wake: Maker | None = None  # (bodies, contacts, count, params) -> whether a body woke
+    mark_middle: Maker | None = None  # (contacts, first, last, pair, found), of a manifold
+    stretch_tangents: Maker | None = None  # (contact, body_a, body_b, pair): units of its tangents
     surface_velocity: Maker | None = None  # (contact, body_a, body_b), once its tangents are set
     complete_torsion: Maker | None = None  # (contact, pair, x, y, z): response to a unit psi_n
     complete_rolling: Maker | None = None  # (contact, pair, k_11, k_12, k_22)
@@ -120,6 +122,7 @@ class Hooks:
     first_stop: Maker | None = None  # (state, count, params, counters) -> when sliding stops [s]
     note_rate: Maker | None = None  # (body, velocity, motion, dt), once a part is solved
     predict_impacts: Maker | None = None  # (contacts, count, motion, params), before the solve
+    reverse_slip: Maker | None = None  # (contact, pair, va, vb), of an impact, before the solve
     slowed_n: Maker | None = None  # (contact, body_a, body_b) -> what of dv_n resists motion [m/s]
     keep_free: Maker | None = None  # (velocities, free), before any contact impulse acts
     match: Maker | None = None  # (contacts, count, bodies, cache, counters, params)

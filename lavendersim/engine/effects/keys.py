@@ -77,6 +77,11 @@ def smaller_above_zero(one: float, other: float) -> float:
     return min(one, other) if min(one, other) > 0.0 else max(one, other)
 
 
+def mean_above_zero(one: float, other: float) -> float:
+    """Return the geometric mean of two surfaces' values; of one that is 0 that of the other."""
+    return sqrt(one * other) if min(one, other) > 0.0 else max(one, other)
+
+
 def in_series(one: float, other: float) -> float:
     """Return the sum, as the compliances of two springs in series add."""
     return one + other

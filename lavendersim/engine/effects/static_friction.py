@@ -54,9 +54,11 @@ def make_start_step(spec: Spec) -> Kernel:
 
 def make_prepare(spec: Spec) -> Kernel:
     """Return `kernel(contact, va, vb, pair, params)`: mu at the slip that the step begins with."""
+    from ..row_terms import row_terms
     from . import has_hook
 
-    moving_surface = has_hook(spec, "surface_velocity")
+    moving_surface, terms = has_hook(spec, "surface_velocity"), row_terms(spec)
+    stretched, coupled = terms.stretched, terms.coupled
 
     def set_friction(contact, va, vb, pair, params):
         if pair.static_friction > pair.friction and pair.friction > 0.0:
@@ -72,12 +74,22 @@ def make_prepare(spec: Spec) -> Kernel:
                 vb.start_vz + vb.start_wx * contact.rby - vb.start_wy * contact.rbx
                 - va.start_vz - va.start_wx * contact.ray + va.start_wy * contact.rax
             )  # fmt: skip
+            if coupled:
+                spin = contact.nx * (vb.start_wx - va.start_wx)
+                spin += contact.ny * (vb.start_wy - va.start_wy)
+                spin += contact.nz * (vb.start_wz - va.start_wz)
+                x += spin * contact.patch_x
+                y += spin * contact.patch_y
+                z += spin * contact.patch_z
             v_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
             v_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
             if moving_surface:
                 v_1 += contact.surface_1
                 v_2 += contact.surface_2
-            ratio = (v_1 * v_1 + v_2 * v_2) / (pair.stribeck_velocity * pair.stribeck_velocity)
+            squared = v_1 * v_1 + v_2 * v_2
+            if stretched:
+                squared = v_1 * v_1 * contact.ease_1 + v_2 * v_2 * contact.ease_2
+            ratio = squared / (pair.stribeck_velocity * pair.stribeck_velocity)
             contact.mu = pair.friction + (pair.static_friction - pair.friction) / (1.0 + ratio)
 
     return kernel(set_friction, spec)

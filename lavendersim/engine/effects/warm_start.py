@@ -31,7 +31,7 @@ def make(spec):
     friction = row_terms(spec).frictional
     terms = row_terms(spec)
     torsional, rolling, bilateral = terms.torsional, terms.rolling, terms.bilateral
-    bounded = terms.bounded
+    bounded, stretched = terms.bounded, terms.stretched
 
     def match_contacts(contacts, count, bodies, cache, counters, params):
         if counters.cached == 0:
@@ -85,6 +85,9 @@ def make(spec):
                         contact.lambda_2 = scale * (
                             contact.t2x * old.px + contact.t2y * old.py + contact.t2z * old.pz
                         )
+                        if stretched:
+                            contact.lambda_1 *= contact.ease_1
+                            contact.lambda_2 *= contact.ease_2
                     # What begins without a push begins without torque: neither is applied.
                     if torsional:
                         if contact.lambda_n > 0.0:

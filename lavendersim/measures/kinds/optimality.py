@@ -71,6 +71,7 @@ def _violations(trace: Trace, contacts: Rows) -> list[Floats]:
     ]
     if "impulse_t1" in (contacts.dtype.names or ()):
         mu = friction_of(trace, contacts)
+        contacts, mu = _unstretched(contacts, mu)
         cone, sliding = _friction(trace, contacts, least, mu)
         violations += [cone, np.maximum(sliding - residual, 0.0)]
     return violations
@@ -81,6 +82,29 @@ def _summed(contacts: Rows, of_bodies: list[float]) -> Floats:
     values = np.array(of_bodies)
     total: Floats = values[contacts["body_a"]] + values[contacts["body_b"]]
     return total
+
+
+def _unstretched(contacts: Rows, mu: Floats) -> tuple[Rows, Floats]:
+    """Return contacts whose section is an ellipse with a disc in its place, and its coefficient.
+
+    Of F = mu M, det M = 1: M^-1 lambda_t and M v obey the law of the disc where lambda_t and v
+    obey maximum dissipation.
+    """
+    if "friction_11" not in (contacts.dtype.names or ()):
+        return contacts, mu
+    a, b, c = (contacts[f"friction_{k}"] for k in ("11", "12", "22"))
+    of_disc = np.sqrt(np.maximum(a * c - b * b, 0.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        a, b, c = (
+            np.where(of_disc > 0.0, one / of_disc, own)
+            for one, own in ((a, 1.0), (b, 0.0), (c, 1.0))
+        )
+    found = contacts.copy()
+    one, two = contacts["impulse_t1"], contacts["impulse_t2"]
+    found["impulse_t1"], found["impulse_t2"] = c * one - b * two, a * two - b * one
+    one, two = contacts["slip_t1"], contacts["slip_t2"]
+    found["slip_t1"], found["slip_t2"] = a * one + b * two, b * one + c * two
+    return found, of_disc
 
 
 def _friction(trace: Trace, contacts: Rows, scale: Floats, mu: Floats) -> tuple[Floats, Floats]:

@@ -233,6 +233,8 @@ def make_fill_rows(spec: Spec):
 
 
 def _make_fill_block(spec: Spec):
+    coupled = row_terms(spec).coupled
+
     def fill(rows, along, x, y, z, contact):
         a, b = OF_A + along, OF_B + along
         rows[a, X], rows[a, Y], rows[a, Z] = -x, -y, -z
@@ -243,6 +245,15 @@ def _make_fill_block(spec: Spec):
         rows[b, WX] = contact.rby * z - contact.rbz * y
         rows[b, WY] = contact.rbz * x - contact.rbx * z
         rows[b, WZ] = contact.rbx * y - contact.rby * x
+        if coupled:
+            turn = contact.patch_x * x + contact.patch_y * y + contact.patch_z * z
+            nx, ny, nz = contact.nx * turn, contact.ny * turn, contact.nz * turn
+            rows[a, WX] -= nx
+            rows[a, WY] -= ny
+            rows[a, WZ] -= nz
+            rows[b, WX] += nx
+            rows[b, WY] += ny
+            rows[b, WZ] += nz
 
     fill = kernel(fill, spec)
 

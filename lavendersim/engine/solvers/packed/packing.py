@@ -9,7 +9,7 @@ from ...compile import inner, kernel
 from ...rotation import inverse_inertia_times
 from ...row_terms import row_terms
 from ...spec import Spec
-from ...vectors import Vec3, cross
+from ...vectors import Vec3, cross, dot, plus_scaled
 from .lane_memory import STRIDE, put_one, take_one
 from .lanes import WIDTH
 from .layout import (
@@ -34,7 +34,7 @@ def _factorise(factor, first, second, third):
 
 def make_put_geometry(spec: Spec, eight: bool) -> Any:
     """Return kernels that write an axis, a turn of a body, and one side of the turns."""
-    step = WIDTH if eight else 1
+    step, coupled = WIDTH if eight else 1, row_terms(spec).coupled
 
     def put_axis(rows, at, x, y, z):
         put_one(rows, at, x)
@@ -60,9 +60,13 @@ def make_put_geometry(spec: Spec, eight: bool) -> Any:
         n = Vec3(contact.nx, contact.ny, contact.nz)
         t1 = Vec3(contact.t1x, contact.t1y, contact.t1z)
         t2 = Vec3(contact.t2x, contact.t2y, contact.t2z)
+        one, two = cross(r, t1), cross(r, t2)
+        if coupled:
+            e = Vec3(contact.patch_x, contact.patch_y, contact.patch_z)
+            one, two = plus_scaled(one, dot(e, t1), n), plus_scaled(two, dot(e, t2), n)
         put_turn(rows, at, own, side, cross(r, n))
-        put_turn(rows, at + AXIS * step, own, side, cross(r, t1))
-        put_turn(rows, at + 2 * AXIS * step, own, side, cross(r, t2))
+        put_turn(rows, at + AXIS * step, own, side, one)
+        put_turn(rows, at + 2 * AXIS * step, own, side, two)
 
     return put_axis, put_turn, kernel(put_turns, spec)
 

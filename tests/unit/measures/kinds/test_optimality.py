@@ -191,3 +191,28 @@ def test_rows_of_joints_have_no_cone() -> None:
     assert math.isnan(evaluate(SPEC, log)[0])  # there is no other row
     log.contact["joint"] = 0
     assert evaluate(SPEC, log)[PUSHING] > 0.0
+
+
+def of_ellipse(impulse: np.ndarray, slip: np.ndarray, section: np.ndarray) -> list[float]:
+    """The violations of a contact with 1 N s along its normal and this section of the cone."""
+    row = dict(zip(("impulse_t1", "impulse_t2"), impulse.tolist(), strict=True))
+    row |= dict(zip(("slip_t1", "slip_t2"), slip.tolist(), strict=True))
+    log = log_with(row)
+    added = {"friction_11": section[0, 0], "friction_12": section[0, 1]}
+    added |= {"friction_22": section[1, 1]}
+    log.contact = recfunctions.append_fields(
+        log.contact, list(added), [[one] for one in added.values()], usemask=False
+    )
+    return list(evaluate(SPEC, log))
+
+
+def test_of_an_ellipse_maximum_dissipation_is_the_law() -> None:
+    """lambda_t = -F^2 v / |F v|; as long a force against the slip leaves the ellipse, or less."""
+    section, slip = np.array([[0.6, 0.1], [0.1, 0.3]]), np.array([0.4, -0.7])
+    stretched = section @ slip
+    impulse = -section @ stretched / np.linalg.norm(stretched)
+    assert of_ellipse(impulse, slip, section) == pytest.approx([0.0] * 4, abs=1e-14)
+    assert of_ellipse(0.9 * impulse, 0.0 * slip, section) == pytest.approx([0.0] * 4, abs=1e-14)
+    assert of_ellipse(1.1 * impulse, slip, section)[CONE] > 0.01
+    inside = -0.25 * slip / np.linalg.norm(slip)
+    assert of_ellipse(inside, slip, section)[SLIDING] > 0.01
