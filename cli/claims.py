@@ -18,6 +18,7 @@ from lavender_cli.printing import digits, digits_between, mark
 
 FULL_FAILURES: Final = 3  # of a summary; a failure is six lines
 ENDED_SHOWN: Final = 10
+WHOLE: Final = "a complete run"  # what a claim expects of a cell that ended early
 Verbose = Annotated[
     bool, typer.Option("--verbose", "-v", help="Each claim in each cell, and every failure.")
 ]
@@ -127,10 +128,10 @@ def _how(worst: Judged) -> str:
 
 def _expected(group: list[Judged]) -> str:
     """Return what was expected; of a closed form whose value differs by cell, its name."""
-    texts = {verdict.expected for verdict in group}
-    named = re.search(r"\((\w+)\)$", group[0].expected)
-    if len(texts) == 1:
-        return group[0].expected
+    texts = {verdict.expected for verdict in group} - {WHOLE}  # of cells that ended early
+    if len(texts) < 2:
+        return texts.pop() if texts else WHOLE
+    named = re.search(r"\((\w+)\)$", next(one.expected for one in group if one.expected != WHOLE))
     return f"the cell's {named.group(1)}" if named else "a number of each cell"
 
 

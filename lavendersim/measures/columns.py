@@ -18,6 +18,17 @@ from lavendersim.measures.changes import constant_gravity
 from lavendersim.measures.interfaces import Floats, Rows, Trace
 
 
+def step_column(trace: Trace, name: str) -> np.ndarray | None:
+    """Return a column of `/step`; None where the scene does without it.
+
+    NotReportedError where the engine does not tell it: that is no log without violations.
+    """
+    step = trace.step
+    if name in (step.dtype.names or ()) or name in getattr(step, "why", ()):
+        return np.asarray(step[name])
+    return None
+
+
 def rows_of_steps(step: Rows, contacts: Rows) -> np.ndarray:
     """Return for each contact the row of its step; contacts are grouped by rising step.
 

@@ -86,7 +86,7 @@ def simulate_elsewhere(
         start = perf_counter_ns()
         written = writer.close(status)
         logging_ns += perf_counter_ns() - start
-    accuracy = Accuracy(worst_residual=float("nan"))
+    accuracy = Accuracy(worst_residual=float("nan"), not_converged=None)
     times = build_ns, physics_ns, logging_ns
     outcome = CellOutcome(job.cell, status, done[0], *times, accuracy, written.digest)
     return outcome, written, bounds.worst

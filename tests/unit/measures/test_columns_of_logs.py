@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from synthetic import contacts, log_of, scene_of, trace_of
 
-from lavendersim.errors import UsageError
+from lavendersim.errors import UNREPORTED, NotReportedError, UsageError
 from lavendersim.measures import columns
+from lavendersim.trace.absent import table_without
 
 FLOOR = {"shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.5}}
 BOX = {"shape": {"kind": "box", "size": [2.0, 2.0, 2.0]}, "mass": 1.0}
@@ -116,3 +117,13 @@ def test_energy_at_rest_is_that_on_the_plane() -> None:
     log.resolved["events"] = [{"at": 0.01, "gravity": [0, 0, -1.0]}]
     with pytest.raises(UsageError, match="energy above that at rest"):
         columns.energy_at_rest(log, "ball", "floor", 1.0)
+
+
+def test_a_column_that_is_not_told_is_no_column_that_the_scene_does_without() -> None:
+    log = trace_of([0.0] * 3, [])
+    assert columns.step_column(log, "residual") is not None
+    assert columns.step_column(log, "cone") is None
+    log.step = table_without(log.step, {"cone": f"Engine {UNREPORTED}"})
+    assert columns.step_column(log, "dissipation") is None
+    with pytest.raises(NotReportedError, match="Engine does not tell it"):
+        columns.step_column(log, "cone")
