@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
 from lavendersim.peers.catalogue import PEERS
+from lavendersim.peers.declaration import Count
 
 
 def test_a_variant_tells_what_its_engine_does_unless_it_says_so() -> None:
@@ -23,3 +27,12 @@ def test_what_is_swept_are_variants_and_settings_that_there_are_defaults_among_t
         for one in peer.swept:
             assert one.variant in peer.variants
             assert one.values.keys() <= settings
+
+
+def test_a_count_is_what_an_engine_can_hold() -> None:
+    """MuJoCo refused 99999999999 iterations by a sentence of its own, after the run had begun."""
+    count = TypeAdapter(Count)
+    assert count.validate_python(2**31 - 1) == 2**31 - 1
+    for wrong in (0, 2**31):
+        with pytest.raises(ValidationError, match="a whole number from 1 to 2147483647"):
+            count.validate_python(wrong)
