@@ -123,8 +123,8 @@ def plans_of(cells: Sequence[RunCell]) -> LoggedPlans:
             continue
         cell.release()
         plan = {name: metadata.get(name, {}) for name in SECTIONS}
-        told = metadata.get("engine", {})
-        plan["engine"] = {key: told[key] for key in OF_ENGINE if told.get(key)}
+        engine = metadata.get("engine", {})
+        plan["engine"] = {key: engine[key] for key in OF_ENGINE if engine.get(key)}
         plans.setdefault(repr(plan), LoggedPlan([], plan)).cells.append(cell)
     return LoggedPlans(list(plans.values()), list(damaged))
 

@@ -59,6 +59,8 @@ class Peer:
     variants: Mapping[str, Variant]  # `mujoco`, `mujoco-stiff`: the first has its own defaults
     settings: tuple[EngineSetting, ...]
     swept: tuple[Knobs, ...]  # by `lavender cost`; the variant of its own defaults is among them
+    # What an engine has by itself of a setting that `swept` varies in that variant.
+    own: Mapping[str, Value] = field(default_factory=dict)
     shapes: frozenset[str]
     surface_keys: frozenset[str]  # of surfaces, that it obeys
     # By surface key the rule (`mixing.RULES`) by which it mixes two bodies; one that is missing is

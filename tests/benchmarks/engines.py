@@ -46,8 +46,6 @@ COMMANDS = {
 }
 # Where somebody's run and kernels lay.
 PLACES = ("run", "log", "figures", "detail", "kernel cache")
-# What an engine has by itself, where its knob is swept.
-OWN = {"rapier": {"iterations": 4}, "bullet": {"iterations": 50}, "physx": {"iterations": 10}}
 
 
 def take(runs: Path) -> None:
@@ -144,7 +142,7 @@ def cost_lines(table: CostTable) -> list[str]:
     ]
     for engine in table.engines:
         rows = [row for row in table.rows if row.family == engine]
-        own = next(row for row in rows if is_own(row))
+        own = next(row for row in rows if row.is_own)
         answer = answers[engine]
         reached = table.rows[answer.row] if answer.row is not None else None
         best = min((row for row in rows if row.is_answer), key=error_of, default=None)
@@ -157,13 +155,6 @@ def cost_lines(table: CostTable) -> list[str]:
             f"{'' if reached is None else time_of(reached)} |"
         )
     return lines
-
-
-def is_own(row: CostRow) -> bool:
-    """Return whether a setting is its engine's own, of lavender what the config specifies."""
-    if row.is_lavender:
-        return row.role == "specified"
-    return row.engine == row.family and row.settings == OWN.get(row.family, {})
 
 
 def spread_of(row: CostRow) -> str:

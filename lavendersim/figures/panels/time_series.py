@@ -43,7 +43,7 @@ def draw_panel(
             try:
                 time, quantity = window_of(panel, cell.trace())
             except NotReportedError:  # the lines of the other engines are drawn
-                time, quantity, label = np.empty(0), np.empty(0), f"{label or 'it'}: not told"
+                time, quantity, label = np.empty(0), np.empty(0), f"{label or 'it'}: not reported"
             axes.plot(
                 time * panel.x_factor,
                 quantity * panel.factor,

@@ -24,6 +24,13 @@ def test_what_is_swept_are_variants_and_settings_that_there_are_defaults_among_t
     for name, peer in PEERS.items():
         settings = {one.name for one in peer.settings}
         assert name in {one.variant for one in peer.swept}
+        # its own defaults are one of its swept settings: what it has of what they vary
+        shared = [one.values for one in peer.swept if one.variant == name]
+        assert {} in shared or any(
+            values.keys() == peer.own.keys()
+            and all(peer.own[key] in many for key, many in values.items())
+            for values in shared
+        )
         for one in peer.swept:
             assert one.variant in peer.variants
             assert one.values.keys() <= settings

@@ -52,9 +52,9 @@ def test_an_engine_that_does_not_tell_a_quantity_has_no_line_and_says_so() -> No
     silent = trace_of([0.0] * 3, resolved=ball_and_floor())
     names = [name for name in silent.step.dtype.names or () if name != "residual"]
     silent.step = table_without(silent.step[names], {"residual": f"Engine {UNREPORTED}"})
-    told = trace_of([0.0] * 3, resolved=ball_and_floor())
-    cells = [SyntheticCell({"engine": "one"}, silent), SyntheticCell({"engine": "two"}, told)]
+    whole = trace_of([0.0] * 3, resolved=ball_and_floor())
+    cells = [SyntheticCell({"engine": "one"}, silent), SyntheticCell({"engine": "two"}, whole)]
     panel = LABELS | {"kind": "time_series", "column": "residual", "series": "engine"}
     (axes,) = page(panel | {"series_label": "by {}"}, cells).axes
     assert [len(line.get_xdata()) for line in axes.lines] == [0, 3]
-    assert legend_of(axes) == ["by one: not told", "by two"]
+    assert legend_of(axes) == ["by one: not reported", "by two"]
