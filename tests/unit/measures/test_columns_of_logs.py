@@ -119,7 +119,7 @@ def test_energy_at_rest_is_that_on_the_plane() -> None:
         columns.energy_at_rest(log, "ball", "floor", 1.0)
 
 
-def test_a_column_that_is_not_told_is_no_column_that_the_scene_does_without() -> None:
+def test_a_column_that_an_engine_keeps_back_is_none_that_the_scene_does_without() -> None:
     log = trace_of([0.0] * 3, [])
     assert columns.step_column(log, "residual") is not None
     assert columns.step_column(log, "cone") is None
