@@ -79,6 +79,19 @@ def test_what_is_expected_is_that_of_the_cells_that_have_ended() -> None:
     assert line.text == "low: nan, expected a complete run in 0 of 2 cells"
 
 
+def test_a_claim_is_printed_with_its_formula_its_tolerance_and_digits_of_use() -> None:
+    one = claim("speed", 0, 4.429)._replace(
+        expected="4.4294469180700204 (sqrt(2*$g*$h))", tolerance="0.01 relative"
+    )
+    other = one._replace(expected="3.1304951684997055 (sqrt(2*$g*$h))", node="speed at e=1")
+    (line,) = summarise([one])
+    assert line.text == "speed: 4.429, expected 4.42945 (sqrt(2*$g*$h)), within 0.01 relative"
+    (line,) = summarise([one, other])
+    assert "expected the cell's sqrt(2*$g*$h) in 0 of 2 cells" in line.text
+    (line,) = summarise([claim("low", 0, 2.5)._replace(expected="at least 1.0", passed=True)])
+    assert line.text == "low: 2.5, expected at least 1"
+
+
 def test_a_residual_that_an_engine_does_not_tell_is_none() -> None:
     silent = row(1, worst_residual=math.nan, not_converged_steps=None)
     assert "residual not recorded" in line_of(silent)

@@ -127,3 +127,12 @@ def test_a_column_that_an_engine_keeps_back_is_none_that_the_scene_does_without(
     assert columns.step_column(log, "dissipation") is None
     with pytest.raises(NotReportedError, match="Engine does not tell it"):
         columns.step_column(log, "cone")
+
+
+def test_an_arrangement_stands_for_the_bodies_that_it_has_placed_and_a_body_for_itself() -> None:
+    names = ["floor", "pin_1", "pin_2", "ball", "pin_4", "row"]
+    bodies = {name: FLOOR if name == "floor" else BALL for name in names}
+    log = log_of(scene_of(bodies), np.zeros((1, len(names), 3)))
+    assert columns.body_columns(log, ["pin"]) == [1, 2]  # pin_4 is a body of its own: 3 is none
+    assert columns.body_columns(log, ["ball", "pin", "row"]) == [3, 1, 2, 5]
+    assert columns.body_columns(log, []) == [1, 2, 3, 4, 5]
