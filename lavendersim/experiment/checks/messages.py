@@ -52,6 +52,13 @@ def report_errors(
     errors = error.errors(include_url=False)
     replaced = _replaced_keys(errors, root, models)
     judged: set[Path] = set()  # a value that fits no form of a union has one error per form
+    # Mappings that were read as a model and found wrong inside: another form, such as a number in
+    # place of the mapping, was not meant.
+    wrong_inside = {
+        path[:end]
+        for path in (_place_of(item, root) for item in errors)
+        for end in range(1, len(path))
+    }
     for item in errors:
         path, node = locate(root, item["loc"])
         if item["type"] not in ("missing", "extra_forbidden"):
@@ -60,12 +67,25 @@ def report_errors(
             judged.add(path)
         if isinstance(node.content, Broken) or item.get("input") is BROKEN:
             continue
+        if path in wrong_inside and _refuses_a_mapping(item):
+            continue
         if item["type"] == "missing" and (node.incomplete or (path, item["loc"][-1]) in replaced):
             continue
         if item["type"] == "too_short" and len(node.items) >= item["ctx"]["min_length"]:
             continue  # pydantic does not count the items that it refused
         mark, sentence = _sentence(item, path, node, root, models)
         report.add(mark, sentence)
+
+
+def _refuses_a_mapping(item: ErrorDetails) -> bool:
+    said = str(item.get("ctx", {}).get("sentence", ""))
+    return item["type"] in _EXPECTED or said.endswith(found({}))
+
+
+def _place_of(item: ErrorDetails, root: Node) -> Path:
+    """Return the path of an error; of a missing key, as if it were there."""
+    path, _ = locate(root, item["loc"])
+    return (*path, item["loc"][-1]) if item["type"] == "missing" else path
 
 
 def locate(root: Node, loc: tuple[str | int, ...]) -> tuple[Path, Node]:
@@ -126,7 +146,17 @@ def _sentence(
         return node.mark, f"{name}: {context['sentence']}"
     if kind == "literal_error":
         return node.mark, f"{name}: {_choice(_forms(models, path)[0], item['input'])}"
-    return node.mark, f"{name}: {_expected(item, node)}"
+    form = _form(models, path) if kind == "model_type" else ""
+    return node.mark, f"{name}: {_expected(item, node)}{form}"
+
+
+def _form(models: Mapping[Path, Model], path: Path) -> str:
+    """Return the required keys of the mapping that is expected at a path, as they are written."""
+    meant = list(models_of(_annotation(models, path)))[:1]
+    required = [
+        f"{key}: ..." for model in meant for key, one in fields(model).items() if one.is_required()
+    ]
+    return f"; write {{{', '.join(required)}}}" if len(required) > 1 else ""
 
 
 def _choice(valid: list[str], value: Any) -> str:
@@ -161,14 +191,20 @@ def _keys_at(models: Mapping[Path, Model], path: Path) -> dict[str, FieldInfo]:
 
 def _forms(models: Mapping[Path, Model], path: Path) -> tuple[list[str], list[str]]:
     """Return the texts that a value may be, and the kinds, from the model that it stands in."""
+    annotation = _annotation(models, path)
+    texts = [text for member in alternatives(annotation) for text in literals(member)]
+    return texts, [kind for model in models_of(annotation) for kind in kinds(model)]
+
+
+def _annotation(models: Mapping[Path, Model], path: Path) -> Any:
+    """Return what a value is to be, from the model that it stands in."""
     holder = next(path[:k] for k in range(len(path) - 1, -1, -1) if path[:k] in models)
     key, *rest = path[len(holder) :]
     info = fields(models[holder]).get(str(key))
     annotation = info.annotation if info is not None else names_of(models[holder])
     for step in rest:
         annotation = inside(annotation, tuple if isinstance(step, int) else dict)
-    texts = [text for member in alternatives(annotation) for text in literals(member)]
-    return texts, [kind for model in models_of(annotation) for kind in kinds(model)]
+    return annotation
 
 
 def _count(node: Node) -> str:
