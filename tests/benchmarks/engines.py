@@ -172,7 +172,7 @@ def large_lines() -> list[str]:
         "",
         *check_lines(kept["check"]),
         "",
-        f"Commit {kept['commit'][:8]}; the rest as above. `large.json` has the SHA-256 of every log.",
+        f"Commit {kept['commit'][:8]}; the rest as above. `large.json` has all logs' SHA-256.",
     ]
 
 
