@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from lavendersim.runner.run_results import CellResult
 
 ENDED_SHOWN: Final = 5
-NO_RESIDUAL: Final = "residual not recorded"  # by versions before 0.1.0
+NO_RESIDUAL: Final = "residual not recorded"  # by other engines, and versions before 0.1.0
 _SINGLE: Final = (int, float, str)  # not a row of numbers
 
 

@@ -18,6 +18,9 @@ from lavender_cli.printing import digits, digits_between, mark
 
 FULL_FAILURES: Final = 3  # of a summary; a failure is six lines
 ENDED_SHOWN: Final = 10
+NO_TOLERANCES: Final = ("", "0", "none")
+FLOAT: Final = re.compile(r"\d+\.\d+(?:e[-+]?\d+)?")
+WHOLE: Final = "a complete run"  # what a claim expects of a cell that ended early
 Verbose = Annotated[
     bool, typer.Option("--verbose", "-v", help="Each claim in each cell, and every failure.")
 ]
@@ -34,6 +37,14 @@ class Judged(NamedTuple):
     message: str
     margin: float  # share of the bound that is left; NaN where there is no such
     judged: bool = True
+    tolerance: str = ""
+
+    @property
+    def asked(self) -> str:
+        """What is expected, with the digits that a person can use and the tolerance."""
+        text = FLOAT.sub(lambda found: digits(float(found[0])), self.expected)
+        has_one = self.tolerance not in NO_TOLERANCES
+        return f"{text}, within {self.tolerance}" if has_one else text
 
     @property
     def fails(self) -> bool:
@@ -90,7 +101,7 @@ def of_memory(verdicts: Iterable[Any]) -> list[Judged]:
 
 def _line(name: str, group: list[Judged]) -> str:
     if len(group) == 1:
-        return f"{name}: {digits(group[0].measured)}, expected {group[0].expected}"
+        return f"{name}: {digits(group[0].measured)}, expected {group[0].asked}"
     known = [one.measured for one in group if not math.isnan(one.measured)]
     shown = digits_between(known) if known else digits(math.nan)
     met = sum(one.passed for one in group)
@@ -112,7 +123,7 @@ def _together(name: str, checks: list[list[Judged]], are_all: bool) -> str:
         return text
     short = worst.name.removeprefix(name)
     place = f" at {worst.place}" if worst.place else ""
-    return f"{text}; {_how(worst)}: {short} {digits(worst.measured)} of {worst.expected}{place}"
+    return f"{text}; {_how(worst)}: {short} {digits(worst.measured)} of {worst.asked}{place}"
 
 
 def _nearest(group: list[Judged]) -> Judged | None:
@@ -127,10 +138,11 @@ def _how(worst: Judged) -> str:
 
 def _expected(group: list[Judged]) -> str:
     """Return what was expected; of a closed form whose value differs by cell, its name."""
-    texts = {verdict.expected for verdict in group}
-    named = re.search(r"\((\w+)\)$", group[0].expected)
-    if len(texts) == 1:
-        return group[0].expected
+    whole = [one for one in group if one.expected != WHOLE]  # not of cells that ended early
+    texts = {one.asked for one in whole}
+    if len(texts) < 2:
+        return texts.pop() if texts else WHOLE
+    named = re.search(r"^\S+ \((.+)\)", whole[0].asked)
     return f"the cell's {named.group(1)}" if named else "a number of each cell"
 
 
@@ -141,7 +153,7 @@ def print_claims(verdicts: Sequence[Any], verbose: bool = False) -> None:
             typer.echo(f"  {mark(passed)}  {text}")
         return
     for one in of_memory(verdicts):
-        shown = f"{one.node}: {digits(one.measured)}, expected {one.expected}"
+        shown = f"{one.node}: {digits(one.measured)}, expected {one.asked}"
         if not one.judged:
             shown = one.message
         typer.echo(f"  {mark(one.passed if one.judged else None)}  {shown}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,6 +13,7 @@ from lavender_cli import claims, law_lines, printing
 from lavender_cli.run import Own, Runs, run_names
 
 if TYPE_CHECKING:
+    from lavendersim.laws.motion import RecordedMotion
     from lavendersim.runner import RunCell
 
 RunOrLog = Annotated[
@@ -65,18 +68,27 @@ def judge(
 
 
 def _judge_laws(run: Path | None, runs: Path, verbose: bool, as_json: bool) -> None:
+    from lavendersim.errors import UsageError
     from lavendersim.laws.judging import judge_laws
-    from lavendersim.laws.motion import motion_of, read_motion
+    from lavendersim.laws.motion import read_motion
     from lavendersim.runner import open_run
 
     found: list[dict[str, Any]] = []
     if run is not None and run.suffix == ".mcap":
-        motions = [(run.name, read_motion(run))]
+        taken: list[tuple[str, Callable[[], RecordedMotion]]] = [
+            (run.name, partial(read_motion, run))
+        ]
     else:
-        opened = open_run(run, runs)
-        motions = ((_title(cell), motion_of(cell.trace())) for cell in opened.cells)  # type: ignore[assignment]
-    for title, motion in motions:
-        judged = judge_laws(motion)
+        cells = open_run(run, runs).cells
+        taken = [(_title(cell), partial(_motion, cell)) for cell in cells]
+    refused: list[UsageError] = []
+    for title, motion in taken:
+        try:
+            judged = judge_laws(motion())
+        except UsageError as error:  # its log has no velocities; those of other engines have them
+            refused.append(error)
+            typer.echo(f"{title}: not judged: {error}", err=True)
+            continue
         if as_json:
             found.append({"cell": title, **judged.table(), **(judged.rows() if verbose else {})})
         else:
@@ -85,6 +97,14 @@ def _judge_laws(run: Path | None, runs: Path, verbose: bool, as_json: bool) -> N
                 law_lines.print_steps(judged)
     if as_json:
         printing.as_json({"cells": found})
+    if len(refused) == len(taken):
+        raise typer.Exit(UsageError.exit_code)
+
+
+def _motion(cell: RunCell) -> RecordedMotion:
+    from lavendersim.laws.motion import motion_of
+
+    return motion_of(cell.trace())
 
 
 def _title(cell: RunCell) -> str:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Metadata = dict[str, dict[str, str]]
 # of a log's metadata
 SECTIONS = ("plan", "shape pairs", "forced", "study-only", "recorded")
+OF_ENGINE = ("version", "variant", "settings", "law", "repeats")  # of another engine's log
 
 
 def show(
@@ -98,7 +99,7 @@ class LoggedPlan(NamedTuple):
     """A plan as logs describe it, and the cells that were run by it."""
 
     cells: list[RunCell]
-    metadata: Metadata  # SECTIONS
+    metadata: Metadata  # SECTIONS, and OF_ENGINE
 
 
 class LoggedPlans(NamedTuple):
@@ -122,6 +123,8 @@ def plans_of(cells: Sequence[RunCell]) -> LoggedPlans:
             continue
         cell.release()
         plan = {name: metadata.get(name, {}) for name in SECTIONS}
+        engine = metadata.get("engine", {})
+        plan["engine"] = {key: engine[key] for key in OF_ENGINE if engine.get(key)}
         plans.setdefault(repr(plan), LoggedPlan([], plan)).cells.append(cell)
     return LoggedPlans(list(plans.values()), list(damaged))
 
@@ -142,6 +145,8 @@ def print_plan(plan: LoggedPlan, count: int) -> None:
         typer.echo(typer.style(f"  study-only: {mistake}, {text}", fg=typer.colors.YELLOW))
     for key, which in metadata["recorded"].items():
         typer.echo(f"  {key} recorded: {which}")
+    for key, text in metadata["engine"].items():
+        typer.echo(f"  {key:{max(map(len, OF_ENGINE))}}  {text}")
     parts = {**metadata["plan"], **metadata["shape pairs"]}
     width = max(map(len, parts), default=0)
     off = []

@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple, get_args
 from matplotlib.lines import Line2D
 
 from lavendersim.cell.choices import Solver
-from lavendersim.figures.style import DARK, LOOKS, Look
+from lavendersim.figures.style import DARK, GREY, LOOKS, Look
 from lavendersim.measures.cost_table import CostRow, CostTable
 
 # Every solver has its colour in every figure; black is that of the front and of what failed.
@@ -26,6 +26,7 @@ RINGS: Final = {
     "specified": {"marker": "o", "markersize": 14, "markeredgewidth": 1.6},
     "chapter": {"marker": "s", "markersize": 14, "markeredgewidth": 1.6},
 }
+FAILED: Final = {"markersize": 5, "markeredgewidth": 1.0}
 
 
 Key = Callable[[CostRow], Any]
@@ -67,6 +68,15 @@ class Looks(NamedTuple):
     def front_colour(self, row: CostRow) -> str:
         """Return the colour of the front that a setting is on."""
         return DARK
+
+    def failed_colour(self, row: CostRow) -> str:
+        """Return the colour of a setting that failed."""
+        return GREY
+
+    def rank(self, row: CostRow) -> float:
+        """Return where among the solvers its own is, from 0 to 1: failures of one stand level."""
+        names = list(self.solvers)
+        return (names.index(row.solver) + 0.5) / len(names)
 
     def mark(self, row: CostRow) -> dict[str, Any]:
         """Return the marker of a setting: full where it starts warm, hollow where cold."""
@@ -134,5 +144,5 @@ def handles_of(table: CostTable, looks: Looks) -> list[Line2D]:
     hollow = {"markerfacecolor": "none", "markeredgewidth": 1.6, "markersize": 11}
     handles += [dot(str(RINGS[role]["marker"]), names[role], **hollow) for role in rings]
     if any(row.failed for row in rows):
-        handles.append(dot("x", "failed", markersize=8))
+        handles.append(dot("x", "failed", **FAILED))
     return [*handles, Line2D([], [], color=DARK, linewidth=1.6, label="front")]

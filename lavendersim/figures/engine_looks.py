@@ -13,7 +13,7 @@ from typing import Any, Final, NamedTuple
 
 from matplotlib.lines import Line2D
 
-from lavendersim.figures.cost_looks import COLOURED, CONTROLLED, MARKERS, RINGS
+from lavendersim.figures.cost_looks import COLOURED, CONTROLLED, FAILED, MARKERS, RINGS
 from lavendersim.figures.style import DARK, Look
 from lavendersim.measures.cost_table import ENGINES, CostRow, CostTable
 
@@ -48,6 +48,15 @@ class EngineLooks(NamedTuple):
         """Return the colour of the front that a setting is on."""
         return self.colour(row)
 
+    def failed_colour(self, row: CostRow) -> str:
+        """Return the colour of a setting that failed."""
+        return self.colour(row)
+
+    def rank(self, row: CostRow) -> float:
+        """Return where among the engines its own is, from 0 to 1: failures of one stand level."""
+        names = list(self.titles)
+        return (names.index(row.family) + 0.5) / len(names)
+
     def curves(self, rows: Sequence[CostRow]) -> Iterator[list[CostRow]]:
         """Yield the settings that differ in their timestep alone, the coarsest first."""
         fixed = [row for row in rows if row.role != "chapter" and not row.is_controlled]
@@ -57,12 +66,10 @@ class EngineLooks(NamedTuple):
     def mark(self, row: CostRow) -> dict[str, Any]:
         """Return the marker of a setting."""
         colour = self.colour(row)
-        own = row.engine == row.family and not row.settings and row.role in ("grid", "specified")
-        hollow = own and (not row.is_lavender or row.role == "specified")
         return {
             "marker": CONTROLLED if row.is_controlled else self.timesteps[row.timestep],
             "markersize": 6.5,
-            "markerfacecolor": "white" if hollow else colour,
+            "markerfacecolor": "white" if row.is_own else colour,
             "markeredgecolor": colour,
             "markeredgewidth": 1.1,
             "linestyle": "none",
@@ -100,5 +107,5 @@ def handles_of(table: CostTable, looks: EngineLooks) -> list[Line2D]:
         if role in roles
     ]
     if any(row.failed for row in rows):
-        handles.append(dot("x", "failed", markersize=8))
+        handles.append(dot("x", "failed", **FAILED))
     return [*handles, Line2D([], [], color=DARK, linewidth=1.6, label="front of an engine")]

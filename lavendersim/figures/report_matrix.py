@@ -125,9 +125,9 @@ def _entry(entry: Any, folder: Path) -> dict[str, Any]:
     found = {"look": look, "text": text, "was_run": True, "log": log, "cost": entry.cost}
     found |= {"number": "", "spread": "", "counts": counts}
     if entry.claim and not math.isnan(entry.number):
-        found["number"] = f"{entry.number:.2g}"
+        found["number"] = f"{entry.number:.3g}"
         if entry.least == entry.least:
-            found["spread"] = f"{entry.least:.2g} to {entry.most:.2g}"
+            found["spread"] = f"{entry.least:.3g} to {entry.most:.3g}"
     elif math.isnan(entry.cost):
         found["number"] = entry.verdict  # no run, and nothing to tell in a number
     return found

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
+from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter, NullLocator
 
 from lavendersim.figures.cost_looks import FLOOR, Looks, drawn
@@ -46,6 +47,19 @@ def draw_timestep_errors(axes: Any, table: CostTable, looks: Looks | EngineLooks
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(axis="x", labelrotation=45)
+
+
+def shows_timesteps(table: CostTable) -> bool:
+    """Return whether there are several timesteps, whose errors have a slope."""
+    return len({row.timestep for row in table.rows if row.role != "chapter"}) > 1
+
+
+def slope_handles() -> list[Line2D]:
+    """Return the entries of the legend for slopes: beside curves their names would lie on them."""
+    return [
+        Line2D([], [], color=GREY, linewidth=1.1, linestyle=dashes, label=f"order {order}")
+        for order, dashes in SLOPES.items()
+    ]
 
 
 def best_solved(rows: Sequence[CostRow]) -> list[list[CostRow]]:
@@ -89,4 +103,3 @@ def _draw_slopes(axes: Any, rows: Sequence[CostRow]) -> None:
     for order, dashes in SLOPES.items():
         line = max(errors) * (steps / steps[-1]) ** order
         axes.plot(steps, line, color=GREY, linewidth=1.1, linestyle=dashes, zorder=1)
-        axes.text(steps[0], line[0], f"order {order}", fontsize=9, color=GREY, ha="left", va="top")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import count, takewhile
 
 import numpy as np
 
@@ -16,6 +17,17 @@ from lavendersim.geometry.shapes import extent, half_space
 from lavendersim.measures import shares
 from lavendersim.measures.changes import constant_gravity
 from lavendersim.measures.interfaces import Floats, Rows, Trace
+
+
+def step_column(trace: Trace, name: str) -> np.ndarray | None:
+    """Return a column of `/step`; None where the scene does without it.
+
+    NotReportedError where the engine does not report it: that is no log without violations.
+    """
+    step = trace.step
+    if name in (step.dtype.names or ()) or name in getattr(step, "why", ()):
+        return np.asarray(step[name])
+    return None
 
 
 def rows_of_steps(step: Rows, contacts: Rows) -> np.ndarray:
@@ -177,10 +189,21 @@ def first_ending_after(trace: Trace, seconds: float) -> int | None:
 
 
 def body_columns(trace: Trace, bodies: Sequence[str]) -> list[int]:
-    """Return the columns of these bodies in `pose`; of all that can move where none is named."""
+    """Return the columns of these bodies in `pose`; of all that can move where none is named.
+
+    The name of an arrangement stands for all that it has placed: NAME_1, NAME_2, ...
+    """
     given = trace.config.scene.bodies.items()
-    names = bodies or [name for name, body in given if is_movable(body)]
-    return [list(trace.bodies).index(name) for name in names]
+    column = {name: place for place, name in enumerate(trace.bodies)}
+    found: list[int] = []
+    for name in bodies or [name for name, body in given if is_movable(body)]:
+        members = [name] if name in column else takewhile(column.__contains__, _members(name))
+        found += [column[member] for member in members]
+    return found
+
+
+def _members(arrangement: str) -> Iterator[str]:
+    return (f"{arrangement}_{number}" for number in count(1))
 
 
 def momentum(trace: Trace) -> Floats:

@@ -87,6 +87,14 @@ class CostRow:
         return self.engine == LAVENDER
 
     @property
+    def is_own(self) -> bool:
+        """Whether it is its engine's own default; of lavender what the config specifies."""
+        if self.is_lavender:
+            return self.role == "specified"
+        own = peer_of(self.engine).own
+        return self.engine == self.family and self.settings.items() <= own.items()
+
+    @property
     def is_controlled(self) -> bool:
         """Whether an accuracy was asked for."""
         return self.accuracy is not None

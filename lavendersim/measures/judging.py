@@ -8,7 +8,7 @@ list them before anything has run. An expectation that selects no cell is one cl
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Final, NamedTuple, Protocol
 
 from lavendersim.errors import LavenderError, NotReportedError
 from lavendersim.measures import controls
@@ -25,6 +25,8 @@ from lavendersim.measures.values import Values
 from lavendersim.measures.verdict import Outcome, Verdict, failure, unjudged
 
 Measures = Mapping[str, MeasureSpec]
+TIMES: Final = ("time", "since", "begin", "end", "after")  # [s] that measures are taken at
+ROUNDED: Final = 2e-9  # [s] logged times are rounded down to nanoseconds
 # By the cell's index: the outcome of each of its checks.
 AlwaysOutcomes = Mapping[int, Mapping[str, Outcome]]
 
@@ -162,12 +164,25 @@ def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> 
                 return failure("a complete run", ended, follows=True)
         if expectation.per_cell:
             row = values.row(expectation.measure, cells[0])
-            return judge_cell(expectation, row, cells[0])
+            outcome = judge_cell(expectation, row, cells[0])
+            if outcome.measured != outcome.measured and not outcome.reason:  # NaN
+                spec = values.measures[expectation.measure]
+                return outcome._replace(reason=beyond_the_end(spec, cells[0]))
+            return outcome
         return judge_sweep(expectation, cells, values.of(expectation.measure))
     except NotReportedError as error:
         return unjudged(str(error))
     except LavenderError as error:  # a log that is damaged, or has no such topic, fails alone
         return failure("a log that can answer", str(error))
+
+
+def beyond_the_end(spec: MeasureSpec, cell: Cell) -> str:
+    """Return which time of a measure lies behind the run's end; empty where none does."""
+    times = {name: getattr(spec, name, None) for name in TIMES}
+    given = {name: time for name, time in times.items() if isinstance(time, int | float)}
+    end = float(cell.trace().step["time"][-1]) if given else 0.0
+    late = [time for time in given.values() if time > end + ROUNDED]
+    return f"it is taken at {late[0]:.9g} s, and the run ends at {end:.9g} s" if late else ""
 
 
 def _path(cells: Sequence[Cell]) -> str:

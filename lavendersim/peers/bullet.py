@@ -44,6 +44,7 @@ PEER: Final = Peer(
         Knobs("bullet-rigid", {"iterations": (5, 50, 500)}),
         Knobs("bullet-accurate"),
     ),
+    own={"iterations": 50},
     shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder"}),
     surface_keys=frozenset({"friction", "restitution"}),
     mixing={"friction": "product", "restitution": "product"},

@@ -98,6 +98,6 @@ def missing(engine: str) -> str:
         return ""
     peer = peer_of(engine)
     return (
-        f"{peer.title} is not installed; expected one of {', '.join(installed())}, or "
-        f"`pip install {peer.package}` (all engines: `pip install lavendersim[engines]`)"
+        f"{peer.title} is not installed: `pip install {peer.package}` (all engines: `pip install "
+        f"lavendersim[engines]`); installed here: {', '.join(installed())}"
     )

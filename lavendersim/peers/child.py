@@ -135,7 +135,8 @@ def main() -> None:
         except CannotRun as reason:
             why = f"{peer_of(task.engine).title} cannot run it: {reason}"
         except Exception as error:  # whatever an engine raises is its result
-            why = f"{type(error).__name__}: {' '.join(str(error).split())}"
+            words = f"{type(error).__name__}: {' '.join(str(error).split())}"
+            why = f"{peer_of(task.engine).title} raised {words}"
         pipe.send(Ended(why))
 
 

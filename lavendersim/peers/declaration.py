@@ -9,7 +9,8 @@ from typing import Annotated, Any, Final, NamedTuple
 from lavendersim.quantities.quantity import Quantity
 
 Value = float | int | str | bool
-Count = Annotated[int, Quantity(whole=True, minimum=1)]  # of iterations, sweeps and the like
+# Of iterations, sweeps and the like: what a C `int` of 32 bits holds.
+Count = Annotated[int, Quantity(whole=True, minimum=1, maximum=2**31 - 1)]
 
 # What of a contact an engine may tell: a point, a unit normal from A to B, the gap [m]; the normal
 # impulse on B, the tangential one as a vector in world axes [N s]; the coefficient that it used.
@@ -58,6 +59,8 @@ class Peer:
     variants: Mapping[str, Variant]  # `mujoco`, `mujoco-stiff`: the first has its own defaults
     settings: tuple[EngineSetting, ...]
     swept: tuple[Knobs, ...]  # by `lavender cost`; the variant of its own defaults is among them
+    # What an engine has by itself of a setting that `swept` varies in that variant.
+    own: Mapping[str, Value] = field(default_factory=dict)
     shapes: frozenset[str]
     surface_keys: frozenset[str]  # of surfaces, that it obeys
     # By surface key the rule (`mixing.RULES`) by which it mixes two bodies; one that is missing is

@@ -52,6 +52,7 @@ PEER: Final = Peer(
         Knobs("physx-pgs", {"iterations": (10, 100)}),
         Knobs("physx-accurate"),
     ),
+    own={"iterations": 10},
     shapes=frozenset({"plane", "sphere", "box", "capsule", "hull", "compound"}),
     surface_keys=frozenset({"friction", "restitution"}),
     mixing={"friction": "mean", "restitution": "mean"},

@@ -9,7 +9,7 @@ import subprocess
 import sys
 from collections.abc import Generator
 from multiprocessing import Pipe
-from tempfile import TemporaryFile
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import IO, Any, Final
 
 from lavendersim.peers.messages import Built, Ended, States, Task
@@ -20,6 +20,27 @@ MODULE: Final = "lavendersim.peers.child"
 THREADS: Final = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
 
+def start(
+    module: str, number: int, folder: str, given: int, said: int | IO[bytes]
+) -> subprocess.Popen[bytes]:
+    """Start the process of an engine, which imports what this one would.
+
+    number: the file descriptor that it talks by; given, said: its input, and where errors go.
+    folder: where it works, for engines leave files (MuJoCo's MUJOCO_LOG.TXT).
+    """
+    path = os.pathsep.join(os.path.abspath(place) for place in sys.path)
+    return subprocess.Popen(
+        [sys.executable, "-P", "-m", module, str(number)],  # -P: nothing from where it works
+        stdin=given,
+        stdout=subprocess.DEVNULL,
+        stderr=said,
+        pass_fds=(number,),
+        start_new_session=True,  # Ctrl-C is for the run, which ends it and its copies as a group
+        env=os.environ | THREADS | {"PYTHONPATH": path},
+        cwd=folder,
+    )
+
+
 def messages_of(
     task: Task, silence: float = SILENCE, module: str = MODULE
 ) -> Generator[Built | States | Ended, None, None]:
@@ -28,17 +49,8 @@ def messages_of(
     silence: [s] after which it is ended. Whoever stops asking ends it.
     """
     receiver, sender = Pipe(duplex=False)
-    with TemporaryFile() as output:
-        command = [sys.executable, "-m", module, str(sender.fileno())]
-        process = subprocess.Popen(
-            command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            stderr=output,
-            pass_fds=(sender.fileno(),),
-            start_new_session=True,  # Ctrl-C is for the run, which ends it
-            env=os.environ | THREADS,
-        )
+    with TemporaryFile() as output, TemporaryDirectory() as folder:
+        process = start(module, sender.fileno(), folder, subprocess.PIPE, output)
         sender.close()
         try:
             assert process.stdin is not None

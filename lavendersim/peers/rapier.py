@@ -52,6 +52,7 @@ PEER: Final = Peer(
         Knobs("rapier", {"iterations": (1, 4, 16)}),
         Knobs("rapier-stiff", {"iterations": (4, 8, 32)}),
     ),
+    own={"iterations": 4},
     shapes=frozenset({"plane", "sphere", "box"}),
     surface_keys=frozenset({"friction", "restitution"}),
     mixing={"friction": "product", "restitution": "larger"},

@@ -24,6 +24,7 @@ from math import ceil
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from statistics import median
+from tempfile import TemporaryDirectory
 from time import perf_counter_ns, process_time_ns
 from typing import Any, Final, NamedTuple
 
@@ -33,7 +34,7 @@ from lavendersim.cell import CellConfig
 from lavendersim.peers.catalogue import peer_of
 from lavendersim.peers.description import Scene
 from lavendersim.peers.messages import Task
-from lavendersim.peers.process import SILENCE, THREADS
+from lavendersim.peers.process import SILENCE, start
 
 MODULE: Final = "lavendersim.peers.timing"
 LONGEST_NS: Final = 200_000_000  # of a sample, building included; engines build in up to 0.1 s
@@ -81,15 +82,9 @@ class TimingServer:
 
     def _start(self) -> None:
         here, there = Pipe()
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", self._module, str(there.fileno())],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            pass_fds=(there.fileno(),),
-            start_new_session=True,  # with its copies it is ended as a group
-            env=os.environ | THREADS,
-        )
+        self._folder = TemporaryDirectory()
+        nothing = subprocess.DEVNULL
+        self._process = start(self._module, there.fileno(), self._folder.name, nothing, nothing)
         there.close()
         self._pipe = here
 
@@ -101,6 +96,7 @@ class TimingServer:
         with suppress(ProcessLookupError):  # it has ended
             os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
+        self._folder.cleanup()
         self._process = self._pipe = None
 
 

@@ -5,9 +5,23 @@ from __future__ import annotations
 import difflib
 import itertools
 from collections.abc import Iterable
+from typing import Final
 
 from lavendersim.quantities.scalars import Ratio
 
+# Names of other programs and textbooks, which no spelling leads to.
+MEANT: Final = {
+    "dt": "timestep",
+    "step_size": "timestep",
+    "mu": "friction",
+    "elasticity": "restitution",
+    "bounciness": "restitution",
+    "ball": "sphere",
+    "cube": "box",
+    "cuboid": "box",
+    "mesh": "hull",
+    "static": "fixed",
+}
 LONGEST_QUOTE = 40
 MOST_NAMES = 24
 MOST_COMPARED = 500  # comparing one misspelt name with more would take noticeable time
@@ -44,6 +58,8 @@ def near(name: object, names: Iterable[str]) -> str | None:
     for candidate in itertools.islice(names, MOST_COMPARED):
         by_folded.setdefault(candidate.casefold(), candidate)
     folded = str(name).casefold()[:100]
+    if MEANT.get(folded) in by_folded:
+        return by_folded[MEANT[folded]]
     for whole, candidate in by_folded.items():
         words = whole.split("_")
         if len(words) > 1 and folded == "".join(word[:1] for word in words):
@@ -52,6 +68,8 @@ def near(name: object, names: Iterable[str]) -> str | None:
     if not close and len(folded) > 2:
         # people leave words out: "gain" for "stabilisation_gain"
         close = [whole for whole in by_folded if folded in whole]
+    if not close:  # "z" for "position_z"
+        close = [whole for whole in by_folded if whole.endswith(f"_{folded}")]
     return by_folded[close[0]] if close else None
 
 

@@ -12,7 +12,9 @@ from pydantic import AfterValidator, StringConstraints, ValidationInfo
 
 from lavendersim.quantities.quantity import sentence_error
 
-NamedKind = Literal["body", "plane", "measure", "axis", "surface", "rope", "joint"]
+NamedKind = Literal[
+    "body", "plane", "measure", "axis", "surface", "rope", "joint", "body or arrangement"
+]
 
 
 def _known(kind: NamedKind, name: str, info: ValidationInfo) -> str:
@@ -24,6 +26,8 @@ def _known(kind: NamedKind, name: str, info: ValidationInfo) -> str:
 
 
 BodyName = Annotated[str, AfterValidator(partial(_known, "body"))]
+# In a list of bodies; an arrangement stands for all that it places.
+BodiesName = Annotated[str, AfterValidator(partial(_known, "body or arrangement"))]
 PlaneName = Annotated[str, AfterValidator(partial(_known, "plane"))]
 MeasureName = Annotated[str, AfterValidator(partial(_known, "measure"))]
 AxisName = Annotated[str, AfterValidator(partial(_known, "axis"))]

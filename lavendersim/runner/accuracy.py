@@ -26,7 +26,8 @@ class Accuracy(NamedTuple):
 
     worst_residual: float = 0.0  # [m/s] of any step
     tolerance: float | None = None  # [m/s] of the config; None: every step takes all its sweeps
-    not_converged: int = 0  # steps whose solve ended above the tolerance
+    # Steps whose solve ended above the tolerance; None: of another engine, which tells no residual.
+    not_converged: int | None = 0
     worst: Mapping[str, Worst] = MappingProxyType({})  # by PARTS, those that the log has
     # By AT_LIMIT: how often each took all its iterations; those that never did are missing.
     at_limit: Mapping[str, int] = MappingProxyType({})
@@ -38,7 +39,7 @@ class Accuracy(NamedTuple):
 
         contact: rows of their contacts, names: of the bodies that these speak of.
         """
-        missed = self.not_converged
+        missed = self.not_converged or 0
         if self.tolerance is not None:
             missed += int(np.count_nonzero(step["not_converged"]))
         worst = np.max(step["residual"], initial=self.worst_residual)

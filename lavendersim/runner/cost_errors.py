@@ -108,7 +108,7 @@ def _error_of(experiment: Experiment, run: SettingRun, truth: SettingRun | None)
         least=_least(experiment, taken, errors),
         worst_at=labels[taken[worst]] if errors else "",
         residual=max(outcome.accuracy.worst_residual for outcome in run.outcomes),
-        not_converged=sum(outcome.accuracy.not_converged for outcome in run.outcomes),
+        not_converged=sum(outcome.accuracy.not_converged or 0 for outcome in run.outcomes),
         steps=sum(outcome.steps for outcome in run.outcomes),
         failed=_failure(experiment, run, errors),
         counts=counts_of(run.cells),
@@ -162,7 +162,7 @@ def _failure(experiment: Experiment, run: SettingRun, errors: Sequence[float]) -
         if outcome.status != "complete":
             return f"{cell.label}: {outcome.status}" if cell.label else outcome.status
     assert experiment.config.cost is not None
-    not_converged = sum(outcome.accuracy.not_converged for outcome in run.outcomes)
+    not_converged = sum(outcome.accuracy.not_converged or 0 for outcome in run.outcomes)
     steps = sum(outcome.steps for outcome in run.outcomes)
     if not_converged > experiment.config.cost.not_converged * steps:
         return not_converged_steps(not_converged, steps, run.setting.tolerance)

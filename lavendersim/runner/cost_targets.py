@@ -138,7 +138,8 @@ def name_of(row: CostRow) -> str:
 
 def settings_of(row: CostRow) -> list[str]:
     """Return the settings of another engine in words: `iterations 50`."""
-    return [f"{key.replace('_', ' ')} {value}" for key, value in row.settings.items()]
+    shown = ((k, f"{v:g}" if isinstance(v, float) else v) for k, v in row.settings.items())
+    return [f"{key.replace('_', ' ')} {value}" for key, value in shown]
 
 
 def _knobs(row: CostRow) -> str:

@@ -11,8 +11,12 @@ from functools import partial
 from time import perf_counter_ns
 from typing import TYPE_CHECKING
 
-from lavendersim.cell import CellEngine
+import numpy as np
+from numpy.typing import NDArray
+
+from lavendersim.cell import CellConfig, CellEngine
 from lavendersim.errors import NOT_REPORTED
+from lavendersim.geometry.bodies import is_movable
 from lavendersim.measures.always import WorstStates
 from lavendersim.peers.catalogue import installed_version, peer_of
 from lavendersim.peers.declaration import Peer
@@ -69,12 +73,13 @@ def simulate_elsewhere(
                     began(partial(done.__getitem__, 0))
             elif isinstance(message, States):
                 kept = message if reported else message._replace(contacts=message.contacts[:0, :3])
-                block, broken = bounds.within(rows.block(kept))
+                row, moving = first_not_finite(kept)
+                block, broken = bounds.within(rows.block(_up_to(kept, row)), row is not None)
                 writer.append(block)
                 done[0] = int(block.step["step"][-1])
-                physics_ns += message.step_ns
-                if broken:
-                    status = broken
+                physics_ns += message.step_ns * len(block.step) // len(message.pose)
+                if broken or row is not None:
+                    status = broken or divergence(config, moving, done[0])
                     break
             elif message.why:
                 status = f"failed: {message.why} after step {done[0]}"
@@ -86,10 +91,39 @@ def simulate_elsewhere(
         start = perf_counter_ns()
         written = writer.close(status)
         logging_ns += perf_counter_ns() - start
-    accuracy = Accuracy(worst_residual=float("nan"))
+    accuracy = Accuracy(worst_residual=float("nan"), not_converged=None)
     times = build_ns, physics_ns, logging_ns
     outcome = CellOutcome(job.cell, status, done[0], *times, accuracy, written.digest)
     return outcome, written, bounds.worst
+
+
+def first_not_finite(states: States) -> tuple[int | None, int]:
+    """Return the row and the movable body of the first state with a number that is none."""
+    state = np.concatenate([states.pose, states.velocity], axis=2)
+    whole: NDArray[np.bool_] = np.isfinite(state).all(axis=2)
+    rows = np.flatnonzero(~whole.all(axis=1))
+    return (int(rows[0]), int(np.argmin(whole[rows[0]]))) if len(rows) else (None, 0)
+
+
+def _up_to(states: States, row: int | None) -> States:
+    """Return the states up to one, with it."""
+    if row is None:
+        return states
+    end, counts = row + 1, states.iterations
+    return states._replace(
+        pose=states.pose[:end],
+        velocity=states.velocity[:end],
+        contacts=states.contacts[states.contacts[:, 0] < states.first + end],
+        iterations=None if counts is None else counts[:end],
+    )
+
+
+def divergence(config: CellConfig, moving: int, step: int) -> str:
+    """Return one sentence naming the body, the step and the time of the divergence."""
+    bodies = config.scene.bodies.items()
+    name = [name for name, body in bodies if is_movable(body)][moving]
+    time = float(config.clock.time(step))
+    return f"diverged: body {name} is no longer finite after step {step} (t = {time:.9g} s)"
 
 
 def absent_topics(planned: dict[str, str], peer: Peer, reported: tuple[str, ...]) -> dict[str, str]:

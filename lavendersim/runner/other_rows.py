@@ -15,6 +15,7 @@ from lavendersim.cell import CellConfig
 from lavendersim.engine.tangents import first_tangent, second_tangent
 from lavendersim.geometry.bodies import is_movable, mass_of, principal_inertia, vector
 from lavendersim.geometry.rotations import rotation_matrices, unit_quaternion
+from lavendersim.measures.not_finite import without_warnings
 from lavendersim.peers.declaration import TANGENTIAL
 from lavendersim.peers.messages import States
 from lavendersim.trace import Block
@@ -76,6 +77,7 @@ class RowsOfStates:
         self._mass = np.array([mass_of(body) for body in moving])
         self._inertia = np.array([principal_inertia(body) for body in moving]).reshape(-1, 3)
 
+    @without_warnings  # what is beyond all numbers is how a cell ends, and is judged
     def block(self, states: States) -> Block:
         """Return the rows of some states."""
         count = len(states.pose)

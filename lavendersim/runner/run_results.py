@@ -41,7 +41,9 @@ class CellResult:
     logging_us_per_step: float  # [us]
     compile_s: float  # composing, compiling and loading its kernels [s]
     tolerance: float | None  # that the config asks of a step [m/s]; None: all sweeps are taken
-    worst_residual: float  # of any step [m/s]; NaN where an older version recorded none
+    worst_residual: (
+        float  # of any step [m/s]; NaN where another engine or an older version has none
+    )
     not_converged_steps: int | None  # that ended above the tolerance; None: likewise
     violations: Mapping[str, float | str | None] = field(default_factory=dict)  # by WORST columns
     # How often an algorithm took all its iterations, by columns of /step; none where it never did.

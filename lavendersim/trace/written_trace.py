@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from lavendersim.record_tables import ROOM_FOR_TIME, widened
 from lavendersim.trace import decode, layout
+from lavendersim.trace.absent import table_without
 from lavendersim.trace.blocks import Block
 from lavendersim.trace.contact_columns import column_form
 from lavendersim.trace.reader import RecordedPoses, Trace
@@ -44,7 +45,7 @@ class WrittenTrace(Trace):
         columns = decode.step_columns(columns_of(rows[0].dtype, STEP_COLUMNS))
         table = _table(rows, columns)
         table["time"] = decode.seconds(table["time_ns"])
-        return table
+        return table_without(table, self._not_reported("/step"))
 
     @cached_property
     def residual(self) -> NDArray[Any]:

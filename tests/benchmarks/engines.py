@@ -2,6 +2,7 @@
 
     python -m tests.benchmarks.engines [--runs DIR]   runs COMMANDS, keeps samples, writes tables
     python -m tests.benchmarks.engines --tables       writes the tables from what is kept
+    python -m tests.benchmarks.engines --large        runs LARGE, keeps it beside them, likewise
 
 Every number is of `lavender check` or `lavender cost` with `--engine all`, of one commit on one
 machine. Kept in docs/engines are every entry of the matrix (check.json), every setting with every
@@ -44,10 +45,12 @@ COMMANDS = {
         *("--engine", "all", "--target", "0.1%", "--no-plot", "--yes", "--json"),
     ],
 }
+LARGE = [  # started once: a step of DART's takes a third of a second and more
+    *("lavender", "check", "configs/cost/pyramid.yaml", "configs/cost/pile.yaml"),
+    *("--engine", "all", "--starts", "1", "--yes", "--json"),
+]
 # Where somebody's run and kernels lay.
 PLACES = ("run", "log", "figures", "detail", "kernel cache")
-# What an engine has by itself, where its knob is swept.
-OWN = {"rapier": {"iterations": 4}, "bullet": {"iterations": 50}, "physx": {"iterations": 10}}
 
 
 def take(runs: Path) -> None:
@@ -60,20 +63,39 @@ def take(runs: Path) -> None:
         if done.returncode > 1:  # 1: an engine fails a case, or no engine reaches the target
             sys.exit(f"{' '.join(words)}: exit code {done.returncode}")
         _write(f"{name}.json", without_places(json.loads(done.stdout)))
+    commands = {name: " ".join(words) for name, words in COMMANDS.items()}
+    _write("logs.json", {"commands": commands, **made(runs)})
+
+
+def take_large(runs: Path) -> None:
+    """Run LARGE and keep what it says, with what it was made by."""
+    done = subprocess.run(
+        [*LARGE, "--runs", str(runs)], cwd=ROOT, stdout=subprocess.PIPE, text=True
+    )
+    if done.returncode > 1:
+        sys.exit(f"{' '.join(LARGE)}: exit code {done.returncode}")
+    keep_large(json.loads(done.stdout), made(runs))
+
+
+def keep_large(check: Any, by: dict[str, Any]) -> None:
+    """Keep the matrix of LARGE."""
+    _write("large.json", {"command": " ".join(LARGE), **by, "check": without_places(check)})
+
+
+def made(runs: Path) -> dict[str, Any]:
+    """Return by what logs were made: commit, machine, versions; and their SHA-256."""
     engines = {
         peer.package: installed_version(name)
         for name, peer in PEERS.items()
         if installed_version(name)
     }
-    made = {
-        "commands": {name: " ".join(words) for name, words in COMMANDS.items()},
+    return {
         "commit": _git("rev-parse", "HEAD"),
         "changed": bool(_git("status", "--porcelain", "--untracked-files=no")),
         "processor": processor(),
         "versions": versions() | engines,
         "sha256": digests(runs),
     }
-    _write("logs.json", made)
 
 
 def _git(*words: str) -> str:
@@ -130,8 +152,28 @@ def tables() -> str:
             "failed, or of the one nearest its bound, and the range of the worst cell of each "
             "start; check.json names the claims. Every sample, and the SHA-256 of every log, is "
             "kept in `docs/engines`; `python -m tests.benchmarks.engines` makes all of it anew.",
+            *large_lines(),
         ]
     )
+
+
+def large_lines() -> list[str]:
+    """Return the table of LARGE; nothing where it is not kept."""
+    if not (KEPT / "large.json").exists():
+        return []
+    kept = json.loads((KEPT / "large.json").read_text())
+    return [
+        "",
+        "A pyramid of 55 boxes and a pile of 200 spheres, started once:",
+        "",
+        "```sh",
+        kept["command"],
+        "```",
+        "",
+        *check_lines(kept["check"]),
+        "",
+        f"Commit {kept['commit'][:8]}; the rest as above. `large.json` has all logs' SHA-256.",
+    ]
 
 
 def cost_lines(table: CostTable) -> list[str]:
@@ -144,7 +186,7 @@ def cost_lines(table: CostTable) -> list[str]:
     ]
     for engine in table.engines:
         rows = [row for row in table.rows if row.family == engine]
-        own = next(row for row in rows if is_own(row))
+        own = next(row for row in rows if row.is_own)
         answer = answers[engine]
         reached = table.rows[answer.row] if answer.row is not None else None
         best = min((row for row in rows if row.is_answer), key=error_of, default=None)
@@ -157,13 +199,6 @@ def cost_lines(table: CostTable) -> list[str]:
             f"{'' if reached is None else time_of(reached)} |"
         )
     return lines
-
-
-def is_own(row: CostRow) -> bool:
-    """Return whether a setting is its engine's own, of lavender what the config specifies."""
-    if row.is_lavender:
-        return row.role == "specified"
-    return row.engine == row.family and row.settings == OWN.get(row.family, {})
 
 
 def spread_of(row: CostRow) -> str:
@@ -237,8 +272,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("--runs", type=Path, default=ROOT / "runs" / "engines")
     parser.add_argument("--tables", action="store_true")
+    parser.add_argument("--large", action="store_true")
     given = parser.parse_args(arguments)
-    if not given.tables:
+    if given.large:
+        take_large(given.runs.resolve())
+    elif not given.tables:
         take(given.runs.resolve())
     write_tables()
 

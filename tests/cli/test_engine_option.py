@@ -61,6 +61,16 @@ def test_both_engines_run_two_scenes_end_to_end(tmp_path: Path) -> None:
     assert found.returncode == 0, found.stdout + found.stderr
     assert (tmp_path / "box.rrd").stat().st_size > 0
     assert "always: residual: not judged" in lavender("judge", where=tmp_path).stdout
+    shown = lavender("show", where=tmp_path).stdout
+    assert "plan of engine=mujoco\n  version   MuJoCo" in shown
+    assert "  law       soft contacts in a convex problem" in shown
+    assert "nan" not in shown
+    # Velocities are in the log of MuJoCo alone, by which its steps are judged.
+    found = lavender("judge", str(box), "--laws", where=tmp_path)
+    assert found.returncode == 0
+    assert found.stderr.startswith("engine=lavender: not judged: ")
+    assert "record.velocities is false" in found.stderr
+    assert found.stdout.startswith("engine=mujoco  120 steps")
 
 
 @needs("mujoco")

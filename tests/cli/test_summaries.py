@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from command_line import lavender
 
-from lavender_cli.cell_lines import summary_of
+from lavender_cli.cell_lines import line_of, summary_of
 from lavender_cli.claims import Judged, print_claims, print_failures, summarise
 from lavendersim.runner.run_results import CellResult
 from tests.drop_config import DROP
@@ -66,6 +66,37 @@ def test_the_worst_of_what_failed_is_named_and_numbers_that_are_none_are_in_no_r
     (line,) = summarise(judged)
     assert not line.passed
     assert line.text == "low: 0.5 to 3, expected at most 1 m in 1 of 4 cells; worst at e=2, 3"
+
+
+def test_what_is_expected_is_that_of_the_cells_that_have_ended() -> None:
+    judged = [claim("low", 0, 0.5), claim("low", 1, 0.8)]
+    judged.append(claim("low", 2, math.nan)._replace(passed=False, expected="a complete run"))
+    (line,) = summarise(judged)
+    assert line.text == (
+        "low: 0.5 to 0.8, expected at most 1 m in 2 of 3 cells; nearest its bound at e=1, 0.8"
+    )
+    (line,) = summarise([judged[2], judged[2]])
+    assert line.text == "low: nan, expected a complete run in 0 of 2 cells"
+
+
+def test_a_claim_is_printed_with_its_formula_its_tolerance_and_digits_of_use() -> None:
+    one = claim("speed", 0, 4.429)._replace(
+        expected="4.4294469180700204 (sqrt(2*$g*$h))", tolerance="0.01 relative"
+    )
+    other = one._replace(expected="3.1304951684997055 (sqrt(2*$g*$h))", node="speed at e=1")
+    (line,) = summarise([one])
+    assert line.text == "speed: 4.429, expected 4.42945 (sqrt(2*$g*$h)), within 0.01 relative"
+    (line,) = summarise([one, other])
+    assert "expected the cell's sqrt(2*$g*$h) in 0 of 2 cells" in line.text
+    (line,) = summarise([claim("low", 0, 2.5)._replace(expected="at least 1.0", passed=True)])
+    assert line.text == "low: 2.5, expected at least 1"
+
+
+def test_a_residual_that_an_engine_does_not_tell_is_none() -> None:
+    silent = row(1, worst_residual=math.nan, not_converged_steps=None)
+    assert "residual not recorded" in line_of(silent)
+    assert "residual <= 1e-09 m/s, largest at e=0" in summary_of([row(0), silent])
+    assert "residual not recorded" in summary_of([silent, silent])
 
 
 def test_checks_of_every_step_that_are_met_are_one_line_and_others_stand_alone() -> None:

@@ -20,6 +20,7 @@ from lavendersim.experiment.text.place import missing_key, name_of, place_of
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.chosen_kind import NO_KIND
 from lavendersim.quantities.found import found, near, nearest, quoted
+from lavendersim.quantities.model import ConfigModel
 
 Model = type[BaseModel]
 
@@ -54,6 +55,13 @@ def report_errors(
     errors = error.errors(include_url=False)
     replaced = _replaced_keys(errors, root, models)
     judged: set[Path] = set()  # a value that fits no form of a union has one error per form
+    # Mappings that were read as a model and found wrong inside: another form, such as a number in
+    # place of the mapping, was not meant.
+    wrong_inside = {
+        path[:end]
+        for path in (_place_of(item, root) for item in errors)
+        for end in range(1, len(path))
+    }
     for item in errors:
         path, node = locate(root, item["loc"])
         if item["type"] not in ("missing", "extra_forbidden"):
@@ -62,12 +70,25 @@ def report_errors(
             judged.add(path)
         if isinstance(node.content, Broken) or item.get("input") is BROKEN:
             continue
+        if path in wrong_inside and _refuses_a_mapping(item):
+            continue
         if item["type"] == "missing" and (node.incomplete or (path, item["loc"][-1]) in replaced):
             continue
         if item["type"] == "too_short" and len(node.items) >= item["ctx"]["min_length"]:
             continue  # pydantic does not count the items that it refused
         mark, sentence = _sentence(item, path, node, root, models)
         report.add(mark, sentence)
+
+
+def _refuses_a_mapping(item: ErrorDetails) -> bool:
+    said = str(item.get("ctx", {}).get("sentence", ""))
+    return item["type"] in _EXPECTED or said.endswith(found({}))
+
+
+def _place_of(item: ErrorDetails, root: Node) -> Path:
+    """Return the path of an error; of a missing key, as if it were there."""
+    path, _ = locate(root, item["loc"])
+    return (*path, item["loc"][-1]) if item["type"] == "missing" else path
 
 
 def locate(root: Node, loc: tuple[str | int, ...]) -> tuple[Path, Node]:
@@ -128,7 +149,20 @@ def _sentence(
         return node.mark, f"{name}: {context['sentence']}"
     if kind == "literal_error":
         return node.mark, f"{name}: {_choice(context['expected'], item['input'])}"
-    return node.mark, f"{name}: {_expected(item, node)}"
+    form = _form(context["class_name"]) if kind == "model_type" else ""
+    return node.mark, f"{name}: {_expected(item, node)}{form}"
+
+
+def _form(model: str) -> str:
+    """Return the required keys of the mapping that a model is of, as they are written."""
+    classes = [ConfigModel]
+    for one in classes:  # which grows meanwhile
+        classes += one.__subclasses__()
+    meant = [one for one in classes if one.__name__ == model]
+    required = [
+        f"{key}: ..." for one in meant[:1] for key, at in fields(one).items() if at.is_required()
+    ]
+    return f"; write {{{', '.join(required)}}}" if len(required) > 1 else ""
 
 
 def _choice(listed: str, value: Any) -> str:

@@ -18,7 +18,7 @@ from pydantic import BaseModel, ValidationError
 from lavendersim.engine.effects import JOINTS
 from lavendersim.experiment.checks.messages import report_errors
 from lavendersim.experiment.models.shapes import SOLIDS
-from lavendersim.experiment.models.tree import BODIES, bodies_of, swept_values
+from lavendersim.experiment.models.tree import ARRANGEMENTS, BODIES, bodies_of, swept_values
 from lavendersim.experiment.text.node import ABSENT, Mark, Node, Path
 from lavendersim.experiment.text.place import Place
 from lavendersim.experiment.text.report import Report
@@ -46,6 +46,10 @@ class Reading:
     def _names(self) -> dict[NamedKind, Collection[str]]:
         return {
             "body": bodies_of(self.root),
+            "body or arrangement": [
+                *bodies_of(self.root),
+                *self.root.get(*ARRANGEMENTS).entries,
+            ],
             "plane": self.root.get(*BODIES).entries,
             "measure": self.root.get("measure").entries,
             "rope": self._connections(("rope",)),

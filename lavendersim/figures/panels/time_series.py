@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.errors import NotReportedError
 from lavendersim.figures.drawing import draw_ideal
 from lavendersim.figures.registration import draws
 from lavendersim.figures.series import looks_of, series_of, within
@@ -17,6 +18,7 @@ from lavendersim.measures.columns import (
     contacts_of,
     deepest_by_step,
     mechanical_energy,
+    step_column,
     summed_by_step,
 )
 from lavendersim.measures.interfaces import Cell, Floats, Rows, Trace
@@ -37,7 +39,11 @@ def draw_panel(
     looks = looks_of(all_series)
     for index, series in enumerate(all_series):
         for number, cell in enumerate(series.cells):
-            time, quantity = window_of(panel, cell.trace())
+            label = series.label
+            try:
+                time, quantity = window_of(panel, cell.trace())
+            except NotReportedError:  # the lines of the other engines are drawn
+                time, quantity, label = np.empty(0), np.empty(0), f"{label or 'it'}: not reported"
             axes.plot(
                 time * panel.x_factor,
                 quantity * panel.factor,
@@ -49,7 +55,7 @@ def draw_panel(
                 markersize=3.5,
                 markevery=max(1, len(time) // MOST_MARKERS),
                 markeredgecolor="none",
-                label=series.label if number == 0 and looks[index].named else None,
+                label=label if number == 0 and looks[index].named else None,
                 zorder=3,
             )
             if panel.ideal is not None and index == number == 0 and len(time):
@@ -78,9 +84,10 @@ def quantity_of(panel: TimeSeries, trace: Trace) -> Floats:
     if panel.column == "energy":
         return mechanical_energy(trace)
     if panel.column in ("residual", "signorini", "cone", "dissipation"):
-        if panel.column not in (trace.step.dtype.names or ()):
+        logged = step_column(trace, panel.column)
+        if logged is None:
             return np.full(len(trace.step), np.nan)  # nothing could touch, or no friction
-        return np.asarray(trace.step[panel.column], dtype=np.float64)
+        return np.asarray(logged, dtype=np.float64)
     if panel.column in OF_STEPS:
         return np.asarray(trace.step[panel.column], dtype=np.float64)
     if panel.column in POSITIONS:

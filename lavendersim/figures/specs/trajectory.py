@@ -7,7 +7,7 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 
 from lavendersim.figures.specs.base import Number, Panel
-from lavendersim.quantities.names import BodyName
+from lavendersim.quantities.names import BodiesName
 from lavendersim.quantities.quantity import sentence_error
 from lavendersim.quantities.readings import POSES
 
@@ -19,8 +19,9 @@ class Trajectory(Panel):
 
     READS = POSES
     kind: Literal["trajectory"]
-    bodies: tuple[BodyName, ...] = Field(
-        default=(), description="whose centres; those of all movable bodies when absent"
+    bodies: tuple[BodiesName, ...] = Field(
+        default=(),
+        description="whose centres, also of arrangements; of all movable bodies when absent",
     )
     x: Coordinate = Field(default="x", description="coordinate on the x axis [m]")
     y: Coordinate = Field(default="z", description="coordinate on the y axis [m]")

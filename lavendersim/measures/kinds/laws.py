@@ -17,6 +17,7 @@ from lavendersim.measures.columns import (
     last_window,
     mechanical_energy,
     rows_of_steps,
+    step_column,
 )
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.registration import measure
@@ -90,18 +91,17 @@ def angular_momentum_drift(spec: specs.AngularMomentumDrift, trace: Trace) -> fl
 def law_violation(spec: specs.LawViolation, trace: Trace) -> float:
     """Return the largest violation in any step; NaN without a step after the time.
 
-    Also where the log does not have it: nothing could touch, or nothing has friction.
+    Also where the log does without it: nothing could touch, or nothing has friction.
     """
-    column = "residual" if spec.part == "natural_map" else spec.part
+    column = step_column(trace, "residual" if spec.part == "natural_map" else spec.part)
     late = trace.step["time"] > spec.after
-    if column not in (trace.step.dtype.names or ()) or not late.any():
+    if column is None or not late.any():
         return NAN
-    return float(np.max(trace.step[column][late]))
+    return float(np.max(column[late]))
 
 
 @measure(specs.NotConvergedSteps)
 def not_converged_steps(spec: specs.NotConvergedSteps, trace: Trace) -> float:
     """Return how many steps ended above the tolerance asked for; NaN where none was asked for."""
-    if "not_converged" not in (trace.step.dtype.names or ()):
-        return NAN
-    return float(np.count_nonzero(trace.step["not_converged"]))
+    column = step_column(trace, "not_converged")
+    return NAN if column is None else float(np.count_nonzero(column))

@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from lavendersim.measures.specs.base import Measure, Seconds
-from lavendersim.quantities.names import BodyName
+from lavendersim.quantities.names import BodiesName, BodyName
 from lavendersim.quantities.quantity import Quantity, Vector, Vector3, sentence_error
 from lavendersim.quantities.readings import POSES
 
@@ -71,8 +71,9 @@ class TopSpeed(Measure):
     READS = POSES
     kind: Literal["top_speed"]
     after: Seconds = Field(default=0.0, description="[s] only motion after this time")
-    bodies: tuple[BodyName, ...] = Field(
-        default=(), description="whose centres; those of all movable bodies when absent"
+    bodies: tuple[BodiesName, ...] = Field(
+        default=(),
+        description="whose centres, also of arrangements; of all movable bodies when absent",
     )
 
 
@@ -82,8 +83,9 @@ class RestTime(Measure):
     READS = POSES
     kind: Literal["rest_time"]
     slower_than: Annotated[float, Quantity("m/s", above=0)] = Field(description="threshold [m/s]")
-    bodies: tuple[BodyName, ...] = Field(
-        default=(), description="whose centres; those of all movable bodies when absent"
+    bodies: tuple[BodiesName, ...] = Field(
+        default=(),
+        description="whose centres, also of arrangements; of all movable bodies when absent",
     )
 
 

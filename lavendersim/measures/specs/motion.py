@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lavendersim.measures.specs.base import Measure, Seconds
-from lavendersim.quantities.names import BodyName, PlaneName
+from lavendersim.quantities.names import BodiesName, BodyName, PlaneName
 from lavendersim.quantities.quantity import Quantity
 from lavendersim.quantities.readings import POSES
 
@@ -33,8 +33,9 @@ class Drift(Measure):
     READS = POSES
     kind: Literal["drift"]
     after: Seconds = Field(default=0.5, description="the time of the pose it is counted from [s]")
-    bodies: tuple[BodyName, ...] = Field(
-        default=(), description="whose centres; those of all movable bodies when absent"
+    bodies: tuple[BodiesName, ...] = Field(
+        default=(),
+        description="whose centres, also of arrangements; of all movable bodies when absent",
     )
 
 

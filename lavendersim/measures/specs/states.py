@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from lavendersim.measures.specs.base import Measure, Seconds
-from lavendersim.quantities.names import BodyName
+from lavendersim.quantities.names import BodiesName, BodyName
 from lavendersim.quantities.quantity import Direction, Quantity, sentence_error
 from lavendersim.quantities.readings import POSES, SUMS, VELOCITIES
 
@@ -20,8 +20,9 @@ class _OfBodies(Measure):
     READS = POSES
 
     body: BodyName | None = Field(default=None, description="the body")
-    bodies: tuple[BodyName, ...] = Field(
-        default=(), description="or several; all movable bodies where neither is given"
+    bodies: tuple[BodiesName, ...] = Field(
+        default=(),
+        description="or several, also arrangements; all movable bodies where neither is given",
     )
     reduce: Reduction = Field(
         default="row",
@@ -99,8 +100,9 @@ class FallenBodies(Measure):
 
     READS = POSES
     kind: Literal["fallen_bodies"]
-    bodies: tuple[BodyName, ...] = Field(
-        default=(), description="which are counted; all movable bodies when absent"
+    bodies: tuple[BodiesName, ...] = Field(
+        default=(),
+        description="which are counted, also arrangements; all movable bodies when absent",
     )
     axis: Direction = Field(default=(0.0, 0.0, 1.0), description="axis in the body's frame")
     degrees: Annotated[float, Quantity("degree", above=0, below=180)] = Field(

@@ -18,13 +18,15 @@ def test_an_engine_has_one_colour_and_is_hollow_at_its_own_defaults() -> None:
         peer("mujoco"),
         peer("mujoco-stiff"),
         peer("mujoco", settings={"iterations": 3}),
+        *(peer("rapier", settings={"iterations": n}) for n in (1, 4)),  # 4 are its own
+        peer("rapier-stiff", settings={"iterations": 4}),
     )
     looks = EngineLooks.of(table.rows)
-    _, ours, default, stiff, _ = table.rows
+    _, ours, default, stiff, *_ = table.rows
     assert looks.colour(default) == looks.colour(stiff) == COLOURS["mujoco"].colour
     assert looks.colour(ours) != looks.colour(stiff)
     hollow = [looks.mark(row)["markerfacecolor"] == "white" for row in table.rows]
-    assert hollow == [True, False, True, False, False]
+    assert hollow == [True, False, True, False, False, False, True, False]
     assert len({one.colour for one in COLOURS.values()}) == len(COLOURS)
 
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from synthetic import contacts, log_of, scene_of, trace_of
 
-from lavendersim.errors import UsageError
+from lavendersim.errors import NOT_REPORTED, NotReportedError, UsageError
 from lavendersim.measures import columns
+from lavendersim.trace.absent import table_without
 
 FLOOR = {"shape": {"kind": "plane", "normal": [0.0, 0.0, 1.0], "offset": 0.5}}
 BOX = {"shape": {"kind": "box", "size": [2.0, 2.0, 2.0]}, "mass": 1.0}
@@ -116,3 +117,22 @@ def test_energy_at_rest_is_that_on_the_plane() -> None:
     log.resolved["events"] = [{"at": 0.01, "gravity": [0, 0, -1.0]}]
     with pytest.raises(UsageError, match="energy above that at rest"):
         columns.energy_at_rest(log, "ball", "floor", 1.0)
+
+
+def test_a_column_that_an_engine_keeps_back_is_none_that_the_scene_does_without() -> None:
+    log = trace_of([0.0] * 3, [])
+    assert columns.step_column(log, "residual") is not None
+    assert columns.step_column(log, "cone") is None
+    log.step = table_without(log.step, {"cone": f"Engine {NOT_REPORTED}"})
+    assert columns.step_column(log, "dissipation") is None
+    with pytest.raises(NotReportedError, match="Engine does not report it"):
+        columns.step_column(log, "cone")
+
+
+def test_an_arrangement_stands_for_the_bodies_that_it_has_placed_and_a_body_for_itself() -> None:
+    names = ["floor", "pin_1", "pin_2", "ball", "pin_4", "row"]
+    bodies = {name: FLOOR if name == "floor" else BALL for name in names}
+    log = log_of(scene_of(bodies), np.zeros((1, len(names), 3)))
+    assert columns.body_columns(log, ["pin"]) == [1, 2]  # pin_4 is a body of its own: 3 is none
+    assert columns.body_columns(log, ["ball", "pin", "row"]) == [3, 1, 2, 5]
+    assert columns.body_columns(log, []) == [1, 2, 3, 4, 5]

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
+import pytest
 from judged import MEASURES, cell, expect, verdicts
 from synthetic import SyntheticCell
 
 from lavendersim.errors import TraceError
 from lavendersim.measures import judge, judge_nodes
+from lavendersim.measures.specs.states import PositionAt
 
 
 def test_an_expectation_that_selects_no_cell_fails() -> None:
@@ -53,3 +55,15 @@ def test_nodes_name_the_axes_that_tell_cells_apart_and_match_the_verdicts() -> N
     nodes = judge_nodes(experiment)
     assert nodes == ["claim at e=0.8, p=0", "claim at e=0.8, p=1", "claim"]
     assert [verdict.node for verdict in judge(MEASURES, claims, cells)] == nodes
+
+
+@pytest.mark.parametrize(
+    ("time", "why"), [(3.0, "taken at 3 s, and the run ends at 0.03 s"), (0.03, "")]
+)
+def test_a_measure_behind_the_end_of_the_run_says_so(time: float, why: str) -> None:
+    """Of four states of 10 ms the last is at 0.03 s; without velocities NaN has other reasons."""
+    spec = PositionAt(kind="position", body="ball", along=(0.0, 0.0, 1.0), time=time)
+    (verdict,) = judge({"high": spec}, [expect("high", at_most=5.0)], [cell(0.0)])
+    assert verdict.passed is not bool(why)
+    assert why in verdict.message
+    assert "run ends" not in verdict.message or why

@@ -15,4 +15,8 @@ if __name__ == "__main__":
     if how == "exit":
         print("it is out of memory", file=sys.stderr)
         os._exit(3)
+    if how == "write":
+        with open("ENGINE_LOG.TXT", "w") as file:
+            file.write("what an engine leaves where it works")
+        os._exit(3)
     time.sleep(60)

@@ -13,6 +13,8 @@ from lavendersim.peers.timing import TimingTask
 def sample_of(asked: TimingTask) -> float:
     """Go wrong as the name of the variant says."""
     engine = asked.task.engine
+    with open("ENGINE_LOG.TXT", "a") as file:
+        file.write("what an engine leaves where it works")
     if engine == "mujoco-stiff":
         os.kill(os.getpid(), signal.SIGSEGV)
     if engine == "mujoco-rk4":

@@ -17,7 +17,10 @@ def test_a_misspelt_engine_gets_the_nearest_and_what_is_installed() -> None:
 
 def test_one_that_is_not_installed_gets_the_command(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(catalogue, "installed_version", lambda name: "")
-    with pytest.raises(UsageError, match=r"^MuJoCo is not installed; .* `pip install mujoco`"):
+    with pytest.raises(
+        UsageError,
+        match=r"^MuJoCo is not installed: `pip install mujoco` .* installed here: lavender$",
+    ):
         catalogue.chosen(["mujoco-stiff"])
     assert catalogue.chosen(["all"]) == ("lavender",)
 

@@ -14,7 +14,6 @@ from lavendersim.peers.messages import Task
 from lavendersim.peers.timing import EngineFailed, TimingServer, TimingTask, sample_of
 from tests.engines import BALL
 
-ROOT = Path(__file__).parents[3]
 STEP, BUILD = 1000, 10**9  # [ns]
 
 
@@ -66,8 +65,9 @@ def test_building_the_steps_before_and_forces_are_outside_of_a_sample(
 
 def test_how_a_sample_goes_wrong_is_reported_and_the_next_is_given(
     monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
 ) -> None:
-    monkeypatch.chdir(ROOT)
+    monkeypatch.chdir(tmp_path)
     server = TimingServer(30.0, "tests.unit.peers.crashing_timing")
     try:
         for engine, reported in (
@@ -80,10 +80,10 @@ def test_how_a_sample_goes_wrong_is_reported_and_the_next_is_given(
             assert server.sample(TimingTask(Task("", "mujoco", {}), 0, 1, 1)) == 7.0
     finally:
         server.close()
+    assert not [*tmp_path.iterdir()]  # what an engine writes is where its process works
 
 
-def test_an_engine_that_hangs_is_ended_and_started_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(ROOT)
+def test_an_engine_that_hangs_is_ended_and_started_anew() -> None:
     server = TimingServer(3.0, "tests.unit.peers.crashing_timing")
     with pytest.raises(EngineFailed, match="hangs: no sample came in 3 s"):
         server.sample(TimingTask(Task("", "mujoco-discrete", {}), 0, 1, 1))

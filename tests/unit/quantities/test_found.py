@@ -60,3 +60,11 @@ def test_half_of_a_quantity_is_twice_as_much_of_the_whole() -> None:
     # Who writes `half_size` gave half of what `size` is.
     assert nearest("half_size", ["size"]) == '; did you mean "size", twice as much?'
     assert nearest("siez", ["size"]) == '; did you mean "size"?'
+
+
+def test_a_word_of_other_programs_has_the_name_here_where_that_is_valid() -> None:
+    assert near("dt", ["duration", "timestep"]) == "timestep"
+    assert near("ball", ["plane", "sphere", "box"]) == "sphere"
+    assert near("mu", ["compliance", "restitution"]) is None
+    assert near("ball", ["bell", "sphere_of_influence"]) == "bell"  # a body, misspelt
+    assert near("z", ["energy", "position_x", "position_z", "velocity_z"]) == "position_z"

@@ -23,6 +23,6 @@ def test_it_is_refused_at_its_name_with_the_command(
     monkeypatch.setattr(catalogue, "installed_version", lambda name: "")
     with pytest.raises(ConfigError) as refused:
         check(experiment)
-    said = f"ball.yaml:{place}: engine: MuJoCo is not installed; expected one of lavender, or "
+    said = f"ball.yaml:{place}: engine: MuJoCo is not installed: "
     assert any(str(one).startswith(said) for one in refused.value.defects), refused.value
     assert all("`pip install mujoco`" in one.message for one in refused.value.defects)

@@ -5,7 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from lavendersim.measures.cost_table import CostRow
-from lavendersim.runner.cost_targets import across_engines, answers, front_of, front_of_engine
+from lavendersim.runner.cost_targets import (
+    across_engines,
+    answers,
+    front_of,
+    front_of_engine,
+    name_of,
+)
 from tests.made_costs import cost_table, row_data, spread
 
 
@@ -87,3 +93,9 @@ def test_several_engines_answer_a_target_in_one_sentence_each_by_its_own_front()
     ]
     assert front_of_engine(rows, "mujoco") == [2, 1]
     assert across_engines(rows[:1], answers(rows[:1], [0.01])) == []
+
+
+def test_a_setting_of_another_engine_has_its_numbers_as_people_write_them() -> None:
+    settings = {"modulus": 100000000.0, "iterations": 500}
+    (row,) = cost_table(row_data(solver="", engine="drake-hydroelastic", settings=settings)).rows
+    assert name_of(row) == "drake-hydroelastic, 240 Hz, modulus 1e+08, iterations 500"

@@ -51,3 +51,30 @@ def test_a_crash_is_how_the_cell_ended_and_others_go_on(
     assert [outcome.steps for outcome in finished.outcomes] == [50, 0, 50]
     assert not finished.good
     assert len(finished.run.cells[1].trace().step) == 1
+
+
+@needs("mujoco")
+def test_a_state_that_is_not_finite_ends_the_cell_as_it_does_by_lavender(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Of four states the third is none: it is the last of the log, with its contacts."""
+
+    def diverging(task: Any) -> Iterator[Any]:
+        yield Built("0", 1)
+        pose = np.tile([0.0, 0, 3, 1, 0, 0, 0], (4, 1, 1))
+        pose[2:, 0, 1] = np.nan
+        contacts = np.zeros((4, 3 + len(PEERS["mujoco"].tells)))
+        contacts[:, 0], contacts[:, 2] = range(4), 1
+        counts = np.arange(4)
+        yield States(0, pose, np.zeros((4, 1, 6)), contacts, 400, counts)
+        yield Ended("")
+
+    monkeypatch.setattr(other_engine, "messages_of", diverging)
+    # the name is that of the body that moves, though one stands before it
+    text = BALL.replace("bodies:", "bodies:\n    floor: {shape: {kind: plane}}")
+    finished = run(load_experiment_text(f"{text}engine: mujoco\n", "ball.yaml"), tmp_path)
+    (cell,), (outcome,) = finished.run.cells, finished.outcomes
+    assert cell.status == "diverged: body ball is no longer finite after step 2 (t = 0.02 s)"
+    assert (outcome.steps, outcome.physics_ns) == (2, 300)
+    assert list(cell.trace().step["step"]) == [0, 1, 2]
+    assert list(cell.trace().contact["step"]) == [0, 1, 2]

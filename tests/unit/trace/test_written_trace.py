@@ -10,10 +10,11 @@ import pytest
 from sample import AS_WRITTEN, BODIES, METADATA, SCENE, moving, run, split, without
 
 from lavendersim.cell import CellConfig
-from lavendersim.errors import UsageError
+from lavendersim.errors import NOT_REPORTED, NotReportedError, UsageError
 from lavendersim.record_tables import widened, with_room
 from lavendersim.trace import Block, TraceWriter, open_trace
 from lavendersim.trace.reader import Trace
+from lavendersim.trace.writer import NOT_REPORTED_COLUMNS
 from lavendersim.trace.written_trace import WrittenTrace, trace_of
 from tests.made_cells import made_cell
 
@@ -112,3 +113,21 @@ def test_a_log_without_blocks_is_read_from_its_file(tmp_path: Path) -> None:
     memory, file = both(tmp_path / "a.mcap", [])
     assert not isinstance(memory, WrittenTrace)
     assert len(memory.step) == len(file.step) == 0
+
+
+def test_a_column_that_an_engine_does_not_report_has_its_reason_in_memory_and_file(
+    tmp_path: Path,
+) -> None:
+    """A measure of a run that has just ended is taken from memory, one of `judge` from the file."""
+    whole = moving(20)
+    names = [name for name in whole.step.dtype.names or () if name != "residual"]
+    kinds = [(name, whole.step.dtype[name]) for name in names]
+    block = whole._replace(step=np.array(whole.step[names].tolist(), kinds))
+    not_reported = {NOT_REPORTED_COLUMNS: {"/step.residual": f"Engine {NOT_REPORTED}"}}
+    config = made_cell(SCENE, record=RECORD)
+    writer = TraceWriter(tmp_path / "a.mcap", config, AS_WRITTEN, METADATA | not_reported, None)
+    writer.append(block)
+    for log in (trace_of(writer.close("complete")), open_trace(tmp_path / "a.mcap")):
+        assert log.step["kinetic_energy"].shape == (20,)
+        with pytest.raises(NotReportedError, match=r"no /step\.residual: Engine does not report it"):
+            log.step["residual"]

@@ -14,7 +14,7 @@ from lavendersim.experiment.text.parse import parse
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.model import ConfigModel
-from tests.marked_config import marked_places
+from tests.marked_config import assert_refused, config, marked_places
 
 
 class Round(ConfigModel):
@@ -108,3 +108,22 @@ def test_fields_stand_under_their_aliases() -> None:
         end: float = 0.0
 
     assert list(fields(Span)) == ["from", "end"]
+
+
+def test_a_mapping_that_is_wrong_inside_was_not_meant_as_a_number() -> None:
+    """`equals` is a number, a formula, or a mapping: of a mapping its own defects count."""
+    swept = {"measure": "{a: {kind: apex_error, body: ball, above: floor}}"}
+    claim = "[{name: it, measure: a, equals: {value: 1, §tolerance: 1}}]"
+    unknown = 'unknown key "tolerance" in expect[0].equals; '
+    assert_refused(
+        config(**swept, expect=claim),
+        unknown + "valid here: value, closed_form, relative, absolute",
+    )
+
+
+def test_a_list_in_place_of_a_mapping_gets_the_keys_of_the_mapping() -> None:
+    sweep = "{dt: {path: numerics.timestep, range: §[0.01, 0.02, 2]}}"
+    assert_refused(
+        config(sweep=sweep),
+        "range: expected a mapping, found a list of 3; write {from: ..., to: ..., steps: ...}",
+    )

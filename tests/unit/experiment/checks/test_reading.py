@@ -81,7 +81,8 @@ def test_values_are_compared_exactly_as_they_are_written(
 
 def refusal(kind: str, name: str) -> str | None:
     box = "box: {shape: {kind: box, size: [1, 1, 1]}, mass: 1, position: [0, 0, 5]}"
-    text = f"scene: {{bodies: {{{FLOOR}, {BALL}, {box}}}}}"
+    pins = "arrangements: {pin: {kind: rack, rows: 2, body: {shape: {kind: box, size: [1, 1, 1]}}}}"
+    text = f"scene: {{bodies: {{{FLOOR}, {BALL}, {box}}}, {pins}}}"
     root = parse(text.encode(), Report(""))
     assert root is not None
     return Reading(root, ("mass",), Report("")).refusal_of(kind, name)  # type: ignore[arg-type]
@@ -94,6 +95,11 @@ def test_names_are_looked_up_by_what_they_name() -> None:
     assert refusal("body", "bal") == 'no body is called "bal"; did you mean "ball"?'
     assert refusal("measure", "peak") == 'no measure is called "peak"; this file has none'
     assert refusal("plane", "ball") == '"ball" is a sphere, expected the name of a plane'
+    for name in ("ball", "pin", "pin_2"):
+        assert refusal("body or arrangement", name) is None
+    pim = refusal("body or arrangement", "pim")
+    assert pim == 'no body or arrangement is called "pim"; did you mean "pin"?'
+    assert refusal("body", "pin") is not None  # one body is asked for
     unknown = refusal("plane", "flor")  # balls and boxes are no answer
     assert unknown == 'no plane is called "flor"; did you mean "floor"?'
 

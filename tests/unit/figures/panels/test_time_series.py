@@ -7,7 +7,9 @@ from made_impacts import TIME, cells, experiment, legend_of
 from swept_pages import LABELS, page
 from synthetic import SyntheticCell, ball_and_floor, trace_of
 
+from lavendersim.errors import UNREPORTED
 from lavendersim.figures.config_figure import compose
+from lavendersim.trace.absent import table_without
 
 
 def test_a_coordinate_over_time_is_that_of_its_body() -> None:
@@ -44,3 +46,15 @@ def test_overlap_is_drawn_for_every_k_th_step_back_from_the_last() -> None:
     line = axes.lines[0]
     np.testing.assert_allclose(line.get_xdata(), [0.01, 0.03], atol=1e-12)
     np.testing.assert_allclose(line.get_ydata(), [0.002, 0.004], atol=1e-15)
+
+
+def test_an_engine_that_does_not_tell_a_quantity_has_no_line_and_says_so() -> None:
+    silent = trace_of([0.0] * 3, resolved=ball_and_floor())
+    names = [name for name in silent.step.dtype.names or () if name != "residual"]
+    silent.step = table_without(silent.step[names], {"residual": f"Engine {NOT_REPORTED}"})
+    whole = trace_of([0.0] * 3, resolved=ball_and_floor())
+    cells = [SyntheticCell({"engine": "one"}, silent), SyntheticCell({"engine": "two"}, whole)]
+    panel = LABELS | {"kind": "time_series", "column": "residual", "series": "engine"}
+    (axes,) = page(panel | {"series_label": "by {}"}, cells).axes
+    assert [len(line.get_xdata()) for line in axes.lines] == [0, 3]
+    assert legend_of(axes) == ["by one: not reported", "by two"]
