@@ -43,6 +43,8 @@ LAST = 2
 MOST_SWEEPS = 3000.0
 # An end that the sweeps left would not reach is worth so many.
 WORTH = 300.0
+# Steps on Coulomb's law itself, to one of the convex rounds before.
+MORE_STEPS = 2.5
 # Multiplications that take the time of one contact's visit in a sweep.
 VISIT = 50.0
 # Newton goes on to this share of the tolerance, or resting loads would creep at it.
@@ -168,6 +170,7 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                     )
                 if slides:
                     if ends:
+                        most *= MORE_STEPS
                         steps += alart_curnier(
                             system, workspace, unknowns, most, SHARPNESS * tolerance, tolerance
                         )

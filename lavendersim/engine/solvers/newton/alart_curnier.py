@@ -10,12 +10,14 @@ E = 1/(softness k) per row. As lambda_t follows lambda_n, M + J^T E' J is not sy
 
 No function falls along such a step, and one that measured the imbalance would bar the way of what
 points in excess trade: steps are whole, a round is kept by its residual. Softness falls from round
-to round, by less after one that fails.
+to round, by less after one that fails, which is followed by one as soft as the last that was kept:
+where points in excess ask for what contradicts by w, each round shifts impulses between them by
+E w, until one of them opens, and only then the residual falls.
 """
 
 from __future__ import annotations
 
-from math import sqrt
+from math import inf, sqrt
 from typing import Any
 
 from ...compile import kernel
@@ -44,10 +46,12 @@ from .rounds import EXACTNESS, SOFTEST, STIFFEST
 
 # Steps of a round at most: those that find every contact's state take a few.
 STEPS_OF_A_ROUND = 12
+# So many times the least change so far, from the fifth step on, says that a round has no end [-].
+STEPS_BEFORE, GROWN = 4, 10.0
 # Softness falls by this factor from round to round, by its root after one that failed [-].
-CUT = 0.1
+CUT = 0.3
 # Rounds that may fail before the method is given up.
-FAILURES = 10
+FAILURES = 30
 # Where the first round fails softness rises by this factor, up to the most [-].
 SOFTER, MOST_SOFT = 10.0, 0.3
 # A round may leave the residual this much above the least so far [-].
@@ -97,6 +101,7 @@ def make_find_root(spec: Spec) -> Any:
         begin(contacts, count, size, workspace)
         enough = max(enough, ROUND_OFF * fastest(contacts, count))
         entries = workspace.start[DOF * size - 1] + DOF * size - DOF * workspace.first[size - 1]
+        least = inf
         for done in range(STEPS_OF_A_ROUND):
             gather(contacts, count, size, workspace)
             assemble_transposed(contacts, count, size, workspace)
@@ -110,8 +115,9 @@ def make_find_root(spec: Spec) -> Any:
             solve_lu(size, workspace, workspace.step)
             directional_derivative(contacts, count, workspace)
             change = greatest_change(contacts, count)
-            if change != change:
+            if change != change or (done >= STEPS_BEFORE and change > GROWN * least):
                 return done + 1, False
+            least = min(least, change)
             take_step(contacts, count, size, workspace, 1.0)
             if change <= enough:
                 return done + 1, True
@@ -144,7 +150,7 @@ def make_alart_curnier(spec: Spec) -> Any:
             return 0
         now = least
         keep(contacts, count)
-        softness, cut, good = SOFTEST, CUT, 0.0
+        softness, cut, good, again = SOFTEST, CUT, 0.0, False
         steps, failed = 0, 0
         while steps < most and failed < FAILURES and softness <= MOST_SOFT:
             # Taken to be at rest, contacts have no shift.
@@ -165,7 +171,9 @@ def make_alart_curnier(spec: Spec) -> Any:
                     if least <= tolerance or (least <= enough and largest > BROUGHT * before):
                         break
                     good, softness = softness, max(softness * cut, STIFFEST)
-                    cut = max(cut * cut, CUT)
+                    if not again:
+                        cut = max(cut * cut, CUT)
+                    again = False
                 else:
                     restore_start(contacts, count, velocities)
             if not kept:
@@ -173,8 +181,12 @@ def make_alart_curnier(spec: Spec) -> Any:
                 if good == 0.0:
                     softness *= SOFTER
                 else:
-                    cut = sqrt(cut)
-                    softness = good * cut
+                    # As soft as the last that was kept: what is in excess moves on by it.
+                    if again:
+                        good /= CUT
+                    else:
+                        cut = sqrt(cut)
+                    softness, again = good, True
         if now > least:
             restore_best(contacts, count, velocities)
         return steps
