@@ -3,7 +3,7 @@
 The convex rounds have De Saxce's shifts beside them, as a fixed point. Where more points hold than
 needed, and slide as they turn, shifts that are off by as little as 1e-6 m/s say which of the points
 opens, and the fixed point has no slope. So a round here has no shift: normal and tangential
-impulses answer velocities each by its own law (Alart and Curnier 1991),
+impulses respond to velocities each by its own law (Alart and Curnier 1991),
     lambda_n = max(0, lambda_n^k - E w_n),    lambda_t = proj(lambda_t^k - E w_t),
 onto the disc of radius mu lambda_n, around the impulses lambda^k of the round before, with
 E = 1/(softness k) per row. As lambda_t follows lambda_n, M + J^T E' J is not symmetric (`lu`).
@@ -67,7 +67,7 @@ def make_find_root(spec: Spec) -> Any:
     """Return `kernel(contacts, count, size, workspace, enough) -> (steps, found)`.
 
     Contacts have their `start` impulses, and their `velocity` is brought to where momentum balances
-    what they answer; enough: change of their velocities by the last step [m/s].
+    what they respond with; enough: change of their velocities by the last step [m/s].
     """
     coulomb_impulse, stiffness = make_coulomb_impulse(spec), make_coulomb_stiffness(spec)
     assemble = make_assemble(spec, stiffness, scale=make_scale_by_coulomb(spec))
