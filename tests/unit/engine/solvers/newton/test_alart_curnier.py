@@ -10,6 +10,7 @@ import pytest
 from drawn_contacts import Drawn, drawn, stacked, views
 from interpreted import interpreted, records
 
+from lavendersim.engine.residual import make_residual
 from lavendersim.engine.solvers.newton import alart_curnier, coulomb_response
 from lavendersim.engine.solvers.newton.envelope import DOF, allocate_envelope
 from lavendersim.engine.solvers.newton.method import step_cost
@@ -83,6 +84,21 @@ def test_rounds_end_at_coulombs_law(seed: int) -> None:
             assert push == pytest.approx(mu * impulse[0], abs=near)
             np.testing.assert_allclose(impulse[1:] * slip, -push * velocity[1:], atol=near)
     assert (found[:, 0] > 1e-6).any()
+
+
+@pytest.mark.parametrize("seed", [0, 4])
+def test_what_is_not_found_is_left_no_worse(seed: int) -> None:
+    """Draws that may jam: rounds that went astray are taken back, with their velocities."""
+    scene, system, workspace, size = prepared(np.random.default_rng(seed))
+    free = scene.motion - scene.inverse @ scene.jacobian.T @ impulses(scene).ravel()
+    residual = interpreted(make_residual(SPEC))
+    before, _ = residual(system.contacts, COUNT, system.velocities)
+    interpreted(alart_curnier.make_alart_curnier(SPEC))(system, workspace, size, 30.0, 1e-11, 1e-9)
+    after, _ = residual(system.contacts, COUNT, system.velocities)
+    assert after <= before
+    motion = free + scene.inverse @ scene.jacobian.T @ impulses(scene).ravel()
+    # Velocities of 10 m/s at most, as each of some twenty rounds is added and taken back.
+    np.testing.assert_allclose(stacked(scene.velocities), motion, atol=1e-11)
 
 
 def test_what_is_solved_is_left_as_it_is(rng) -> None:
