@@ -8,7 +8,8 @@ counted in operations, never in time: equal runs take equal decisions.
 
 A solve that would end above its tolerance calls it once more, LAST sweeps before the end, whatever
 the sweeps promise: what a step leaves of the error, a cold first one above all, later steps only
-spread. In a large heap that is not affordable, and the call takes no step.
+spread. What that call leaves above the tolerance goes to `newton.alart_curnier`, after the last
+sweep again. In a large heap that is not affordable, and the call takes no step.
 
 Without a tolerance nothing but a sweep that changes nothing ends a solve before its last sweep, and
 Newton's method is worth what it would be for a tolerance that is never reached.
@@ -24,8 +25,10 @@ from typing import Any, NamedTuple
 from ..compile import kernel
 from ..effects import has_hook
 from ..residual import make_residual
+from ..row_terms import row_terms
 from ..spec import Spec
 from .iteration import Iteration
+from .newton.alart_curnier import make_alart_curnier
 from .newton.envelope import allocate_envelope
 from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, step_cost
 from .packed.late import FIRST, Packing, make_sweep_late, packs_late
@@ -41,6 +44,8 @@ LAST = 2
 MOST_SWEEPS = 3000.0
 # An end that the sweeps left would not reach is worth so many.
 WORTH = 300.0
+# Steps on Coulomb's law itself, to one of the convex rounds before.
+MORE_STEPS = 2.5
 # Multiplications that take the time of one contact's visit in a sweep.
 VISIT = 50.0
 # Newton goes on to this share of the tolerance, or resting loads would creep at it.
@@ -61,7 +66,8 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
     if spec.has("newton"):
         rows = 6 * bodies
         entries = min(rows * (rows + 1) // 2, MOST_ENTRIES)
-        return allocate_envelope(bodies, contacts, entries, () if packed is None else packed)
+        upper = entries if row_terms(spec).frictional else 0
+        return allocate_envelope(bodies, contacts, entries, () if packed is None else packed, upper)
     return no_workspace(spec, bodies, contacts) if packed is None else Swept(packed)
 
 
@@ -125,15 +131,18 @@ def make(spec: Spec) -> Iteration:
 def _make_proceed(spec: Spec, put_back: Any) -> Any:
     newton, residual = make_newton(spec), make_residual(spec)
     chooses = has_hook(spec, "choose_impulses")
-    packs = put_back is not None
+    packs, slides = put_back is not None, row_terms(spec).frictional
+    alart_curnier: Any = make_alart_curnier(spec)
 
     def proceed(system, workspace, params, counters, carry):
         tolerance = max(params.tolerance, 0.0)
         sweeps, greatest, aim, packing = carry.sweeps, carry.greatest, carry.aim, carry.packing
         pause, sticking_guess = carry.pause, carry.sticking_guess
         unknowns, cost = carry.unknowns, carry.cost
-        ends = False
-        if sweeps == params.sweeps - LAST and sweeps > LOOK:
+        ends, over = False, False
+        if slides:
+            over = sweeps == params.sweeps
+        if (sweeps == params.sweeps - LAST or over) and sweeps > LOOK:
             if packs:
                 put_back(system, workspace.packed, packing)
             largest, _ = residual(system.contacts, system.count, system.velocities)
@@ -156,9 +165,17 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                 if packs:
                     put_back(system, workspace.packed, packing)
                     packing = Packing(FIRST, 0)  # few sweeps follow
-                steps, sticking_guess = newton(
-                    system, workspace, unknowns, most, SHARPNESS * tolerance, sticking_guess
-                )
+                steps = 0
+                if not over:
+                    steps, sticking_guess = newton(
+                        system, workspace, unknowns, most, SHARPNESS * tolerance, sticking_guess
+                    )
+                if slides:
+                    if ends:
+                        most *= MORE_STEPS
+                        steps += alart_curnier(
+                            system, workspace, unknowns, most, SHARPNESS * tolerance, tolerance
+                        )
                 counters.newton_steps += steps
                 if steps > 0:
                     if chooses:

@@ -129,5 +129,7 @@ def test_a_column_that_an_engine_does_not_report_has_its_reason_in_memory_and_fi
     writer.append(block)
     for log in (trace_of(writer.close("complete")), open_trace(tmp_path / "a.mcap")):
         assert log.step["kinetic_energy"].shape == (20,)
-        with pytest.raises(NotReportedError, match=r"no /step\.residual: Engine does not report it"):
+        with pytest.raises(
+            NotReportedError, match=r"no /step\.residual: Engine does not report it"
+        ):
             log.step["residual"]

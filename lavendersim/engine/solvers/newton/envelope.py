@@ -44,11 +44,14 @@ class Envelope(NamedTuple):
     mass: np.ndarray  # (bodies,) MASS, by position
     rows: np.ndarray  # (9, 6) rows n, t1, t2 of one contact: body A's, body B's, and scaled
     shifts: FixedPoint  # (contacts,), see `shifts`
+    upper: np.ndarray  # (capacity,) entries above the diagonal by columns, as `values`; see `lu`
     packed: Any = ()  # what sweeps between two calls work in, where they pack contacts
 
 
-def allocate_envelope(bodies: int, contacts: int, capacity: int, packed: Any = ()) -> Envelope:
-    """Return the arrays for so many bodies, contacts and matrix entries."""
+def allocate_envelope(
+    bodies: int, contacts: int, capacity: int, packed: Any = (), upper: int = 0
+) -> Envelope:
+    """Return the arrays for so many bodies, contacts and matrix entries; upper: above as well."""
     rows = DOF * bodies
     return Envelope(
         np.zeros(bodies, np.int64),
@@ -65,6 +68,7 @@ def allocate_envelope(bodies: int, contacts: int, capacity: int, packed: Any = (
         np.zeros(bodies, dtype(MASS)),
         np.zeros((9, DOF)),
         allocate_fixed_point(contacts),
+        np.zeros(upper),
         packed,
     )
 
@@ -156,18 +160,19 @@ def lay_out(contacts, count, workspace):
 
 
 @inner
-def _dot(values, i, j, length):
+def dot_rows(values, i, others, j, length):
+    """Return the product of two rows, from places i and j on."""
     # Four sums side by side: a single one would wait for itself at every addition.
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     k = 0
     while k + 4 <= length:
-        a += values[i + k] * values[j + k]
-        b += values[i + k + 1] * values[j + k + 1]
-        c += values[i + k + 2] * values[j + k + 2]
-        d += values[i + k + 3] * values[j + k + 3]
+        a += values[i + k] * others[j + k]
+        b += values[i + k + 1] * others[j + k + 1]
+        c += values[i + k + 2] * others[j + k + 2]
+        d += values[i + k + 3] * others[j + k + 3]
         k += 4
     while k < length:
-        a += values[i + k] * values[j + k]
+        a += values[i + k] * others[j + k]
         k += 1
     return (a + b) + (c + d)
 
@@ -186,7 +191,9 @@ def factorise(bodies, workspace):
             length = column - low
             at = base + column - begin
             if length > 0:
-                values[at] -= _dot(values, base + low - begin, start[column] + low - other, length)
+                values[at] -= dot_rows(
+                    values, base + low - begin, values, start[column] + low - other, length
+                )
         pivot = values[base + row - begin]
         for column in range(begin, row):
             at = base + column - begin

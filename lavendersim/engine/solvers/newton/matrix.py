@@ -16,13 +16,32 @@ from .response import make_fill_rows
 from .torques import make_add_torque_block
 
 
-def make_assemble(spec: Spec, stiffness: Any, torques: bool = True):
+def make_scale_rows(spec: Spec) -> Any:
+    """Return `kernel(rows, source, h)`: the scaled rows are h times those from `source` on."""
+    friction = row_terms(spec).frictional
+
+    def scale_rows(rows, source, h):
+        for j in range(DOF):
+            n = rows[source, j]
+            rows[SCALED, j] = h.nn * n
+            if friction:
+                one, two = rows[source + T1, j], rows[source + T2, j]
+                rows[SCALED, j] += h.n1 * one + h.n2 * two
+                rows[SCALED + T1, j] = h.n1 * n + h.t11 * one + h.t12 * two
+                rows[SCALED + T2, j] = h.n2 * n + h.t12 * one + h.t22 * two
+
+    return kernel(scale_rows, spec)
+
+
+def make_assemble(spec: Spec, stiffness: Any, torques: bool = True, scale: Any = None):
     """Return `kernel(contacts, count, size, workspace)`: fill the envelope with M + J^T E' J.
 
-    stiffness: kernel(contact) -> E'. torques: they respond, too.
+    stiffness: kernel(contact) -> E'. torques: they respond, too. scale: kernel(rows, source, h)
+    that scales rows by E'; None: by a symmetric one.
     """
     friction, fill_rows = row_terms(spec).frictional, make_fill_rows(spec)
     directions = 3 if friction else 1
+    scale_rows = make_scale_rows(spec) if scale is None else scale
     spins, add_torque_block = torques and resists_turning(spec), make_add_torque_block(spec)
 
     def add_block(workspace, p, q, rows_p, rows_q):
@@ -38,18 +57,6 @@ def make_assemble(spec: Spec, stiffness: Any, torques: bool = True):
                 values[base + j] += total
 
     add_block = kernel(add_block, spec)
-
-    def scale_rows(rows, source, h):
-        for j in range(DOF):
-            n = rows[source, j]
-            rows[SCALED, j] = h.nn * n
-            if friction:
-                one, two = rows[source + T1, j], rows[source + T2, j]
-                rows[SCALED, j] += h.n1 * one + h.n2 * two
-                rows[SCALED + T1, j] = h.n1 * n + h.t11 * one + h.t12 * two
-                rows[SCALED + T2, j] = h.n2 * n + h.t12 * one + h.t22 * two
-
-    scale_rows = kernel(scale_rows, spec)
 
     def assemble(contacts, count, size, workspace):
         values, start, mass = workspace.values, workspace.start, workspace.mass

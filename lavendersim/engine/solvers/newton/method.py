@@ -96,10 +96,13 @@ def make_set_impulse(spec: Spec):
     return kernel(set_impulse, spec)
 
 
-def make_accept(spec: Spec, set_impulse: Any):
-    """Return `kernel(contacts, count, velocities)`: impulses of a minimum in place of those now."""
+def make_accept(spec: Spec, set_impulse: Any, projected_impulse: Any):
+    """Return `kernel(contacts, count, velocities)`: what a round ends with in place of those now.
+
+    projected_impulse: kernel of a contact's response.
+    """
     friction, spins = row_terms(spec).frictional, resists_turning(spec)
-    projected_impulse, accept_torques = make_projected_impulse(spec), make_accept_torques(spec)
+    accept_torques = make_accept_torques(spec)
 
     def accept(contacts, count, velocities):
         for c in range(count):
@@ -158,7 +161,7 @@ def make_newton(spec: Spec):
     residual, start = make_residual(spec), make_start(spec)
     assemble_mass, minimise = make_assemble_mass(spec), make_minimise(spec)
     set_impulse, keep = make_set_impulse(spec), make_keep(spec)
-    accept = make_accept(spec, set_impulse)
+    accept = make_accept(spec, set_impulse, make_projected_impulse(spec))
     restore_start = make_restore(spec, "start", set_impulse)
     restore_best = make_restore(spec, "best", set_impulse)
     begin, kept = kernel(begin_rounds, spec), kernel(is_kept, spec)

@@ -103,48 +103,10 @@ def make_directional_derivative(spec: Spec, torques: bool = True):
     return kernel(directional_derivative, spec)
 
 
-def make_minimise(spec: Spec):
-    """Return `kernel(contacts, count, size, workspace, enough) -> (steps, found)`.
-
-    Contacts have their `start` impulses, and their `velocity` is brought to the minimum's; enough:
-    a further step need not gain more [J].
-    """
-    friction = row_terms(spec).frictional
-    descend = make_descend(spec, make_projected_impulse(spec), make_stiffness(spec))
-
-    def minimise(contacts, count, size, workspace, enough):
-        for r in range(DOF * size):
-            workspace.change[r] = 0.0
-        for c in range(count):
-            contact = contacts[c]
-            contact.step_n = 0.0
-            if friction:
-                contact.step_1, contact.step_2 = 0.0, 0.0
-        return descend(contacts, count, size, workspace, enough, 0.0)
-
-    return kernel(minimise, spec)
-
-
-def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bool = True):
-    """Return `kernel(contacts, count, size, workspace, enough, first) -> (steps, found)`.
-
-    The same from a change of the velocities on, which the contacts' `velocity` has. first: slope of
-    the first step [J]; 0: it is to come.
-    projected_impulse, stiffness: kernels of a contact's response, see `response`. torques: they
-    respond, too.
-    """
-    friction = row_terms(spec).frictional
-    fill_rows, body_of = make_fill_rows(spec), make_body_of(spec)
-    assemble = make_assemble(spec, stiffness, torques)
-    directional_derivative = make_directional_derivative(spec, torques)
-    spins = torques and resists_turning(spec)
-    gather_torque = make_gather_torque(spec)
-    torque_slope, advance_spin = make_torque_slope(spec), make_advance_spin(spec)
-    at_minimum, slow = kernel(is_at_minimum, spec), kernel(is_slow, spec)
-    gains_nothing = kernel(is_idle, spec)
+def make_multiply_mass(spec: Spec):
+    """Return `kernel(workspace, x, p, i) -> row i of block p of M x`."""
 
     def multiply(workspace, x, p, i):
-        # Row i of block p of M x.
         own = workspace.mass[p]
         at = DOF * p
         if i < WX:
@@ -156,7 +118,22 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
             return own.xy * wx + own.yy * wy + own.yz * wz
         return own.xz * wx + own.yz * wy + own.zz * wz
 
-    multiply = kernel(multiply, spec)
+    return kernel(multiply, spec)
+
+
+def make_gather(spec: Spec, projected_impulse: Any, torques: bool = True):
+    """Return `kernel(contacts, count, size, workspace)`: what is out of balance, as `gradient`.
+
+    projected_impulse: kernel of a contact's response; torques: they respond, too.
+    """
+    friction = row_terms(spec).frictional
+    fill_rows, body_of, multiply = (
+        make_fill_rows(spec),
+        make_body_of(spec),
+        make_multiply_mass(spec),
+    )
+    spins = torques and resists_turning(spec)
+    gather_torque = make_gather_torque(spec)
 
     def gather(contacts, count, size, workspace):
         # gradient = M change - J^T (lambda - lambda^k)
@@ -184,7 +161,79 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
                 a, b = body_of(contact, workspace, OF_A), body_of(contact, workspace, OF_B)
                 gather_torque(contact, a, b, gradient)
 
-    gather = kernel(gather, spec)
+    return kernel(gather, spec)
+
+
+def make_take_step(spec: Spec, torques: bool = True):
+    """Return `kernel(contacts, count, size, workspace, length)`: so much of the step is taken."""
+    friction = row_terms(spec).frictional
+    spins, advance_spin = torques and resists_turning(spec), make_advance_spin(spec)
+
+    def take_step(contacts, count, size, workspace, length):
+        for r in range(DOF * size):
+            workspace.change[r] += length * workspace.step[r]
+        for c in range(count):
+            contact = contacts[c]
+            contact.velocity_n += length * contact.step_n
+            if friction:
+                contact.velocity_1 += length * contact.step_1
+                contact.velocity_2 += length * contact.step_2
+                contact.step_1, contact.step_2 = 0.0, 0.0
+            contact.step_n = 0.0
+            if spins:
+                advance_spin(contact, length)
+
+    return kernel(take_step, spec)
+
+
+def make_begin(spec: Spec):
+    """Return `kernel(contacts, count, size, workspace)`: a round begins without a change."""
+    friction = row_terms(spec).frictional
+
+    def begin(contacts, count, size, workspace):
+        for r in range(DOF * size):
+            workspace.change[r] = 0.0
+        for c in range(count):
+            contact = contacts[c]
+            contact.step_n = 0.0
+            if friction:
+                contact.step_1, contact.step_2 = 0.0, 0.0
+
+    return kernel(begin, spec)
+
+
+def make_minimise(spec: Spec):
+    """Return `kernel(contacts, count, size, workspace, enough) -> (steps, found)`.
+
+    Contacts have their `start` impulses, and their `velocity` is brought to the minimum's; enough:
+    a further step need not gain more [J].
+    """
+    begin = make_begin(spec)
+    descend = make_descend(spec, make_projected_impulse(spec), make_stiffness(spec))
+
+    def minimise(contacts, count, size, workspace, enough):
+        begin(contacts, count, size, workspace)
+        return descend(contacts, count, size, workspace, enough, 0.0)
+
+    return kernel(minimise, spec)
+
+
+def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bool = True):
+    """Return `kernel(contacts, count, size, workspace, enough, first) -> (steps, found)`.
+
+    The same from a change of the velocities on, which the contacts' `velocity` has. first: slope of
+    the first step [J]; 0: it is to come.
+    projected_impulse, stiffness: kernels of a contact's response, see `response`. torques: they
+    respond, too.
+    """
+    friction = row_terms(spec).frictional
+    assemble = make_assemble(spec, stiffness, torques)
+    gather, take_step = make_gather(spec, projected_impulse, torques), make_take_step(spec, torques)
+    directional_derivative = make_directional_derivative(spec, torques)
+    spins, torque_slope = torques and resists_turning(spec), make_torque_slope(spec)
+    multiply = make_multiply_mass(spec)
+    at_minimum, slow = kernel(is_at_minimum, spec), kernel(is_slow, spec)
+    gains_nothing = kernel(is_idle, spec)
 
     def slope_at(contacts, count, length):
         # The contacts' part of the derivative along the step; it grows with the length.
@@ -251,18 +300,7 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
                 return done + 1, False
             directional_derivative(contacts, count, workspace)
             length = choose_length(contacts, count, size, workspace, slope)
-            for r in range(rows):
-                workspace.change[r] += length * workspace.step[r]
-            for c in range(count):
-                contact = contacts[c]
-                contact.velocity_n += length * contact.step_n
-                if friction:
-                    contact.velocity_1 += length * contact.step_1
-                    contact.velocity_2 += length * contact.step_2
-                    contact.step_1, contact.step_2 = 0.0, 0.0
-                contact.step_n = 0.0
-                if spins:
-                    advance_spin(contact, length)
+            take_step(contacts, count, size, workspace, length)
         return STEPS_OF_A_ROUND, False
 
     return kernel(descend, spec)

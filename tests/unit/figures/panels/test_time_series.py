@@ -7,7 +7,7 @@ from made_impacts import TIME, cells, experiment, legend_of
 from swept_pages import LABELS, page
 from synthetic import SyntheticCell, ball_and_floor, trace_of
 
-from lavendersim.errors import UNREPORTED
+from lavendersim.errors import NOT_REPORTED
 from lavendersim.figures.config_figure import compose
 from lavendersim.trace.absent import table_without
 
