@@ -92,7 +92,7 @@ def test_a_claim_is_printed_with_its_formula_its_tolerance_and_digits_of_use() -
     assert line.text == "low: 2.5, expected at least 1"
 
 
-def test_a_residual_that_an_engine_does_not_tell_is_none() -> None:
+def test_a_residual_that_an_engine_does_not_report_is_none() -> None:
     silent = row(1, worst_residual=math.nan, not_converged_steps=None)
     assert "residual not recorded" in line_of(silent)
     assert "residual <= 1e-09 m/s, largest at e=0" in summary_of([row(0), silent])

@@ -81,8 +81,8 @@ def report_errors(
 
 
 def _refuses_a_mapping(item: ErrorDetails) -> bool:
-    said = str(item.get("ctx", {}).get("sentence", ""))
-    return item["type"] in _EXPECTED or said.endswith(found({}))
+    sentence = str(item.get("ctx", {}).get("sentence", ""))
+    return item["type"] in _EXPECTED or sentence.endswith(found({}))
 
 
 def _place_of(item: ErrorDetails, root: Node) -> Path:
