@@ -14,7 +14,7 @@ from drawn_contacts import put_vector, random_frame
 from interpreted import interpreted, records
 from plain_facts import one_row
 
-from lavendersim.engine.approach import CREEP, ELSEWHERE, GUESSED, NEVER
+from lavendersim.engine.approach import CREEP, ELSEWHERE, GUESSED, NEVER, OVERLAP
 from lavendersim.engine.foreseen_impacts import (
     BENDS,
     CLOSED,
@@ -22,9 +22,11 @@ from lavendersim.engine.foreseen_impacts import (
     FLIGHT,
     GLANCING,
     LAST,
+    REBOUNDS,
     make_follow,
     make_foresee,
     make_is_impact,
+    make_let_rebound,
 )
 from lavendersim.engine.record_layout import allocate_bodies, allocate_pairs, contact_dtype
 from lavendersim.engine.records import MOTION, PLANE, SPHERE, TOUCHING, dtype
@@ -170,6 +172,17 @@ def test_a_ball_that_falls_back_is_due_when_its_flight_ends() -> None:
         assert held.foresee()[2] == expected
 
 
+@pytest.mark.parametrize("v", [0.02, 0.06])
+def test_what_is_far_inside_has_not_left_by_a_rebound(v: float) -> None:
+    """A rope that is too long by itself, whose ends come nearer: it has a row all the same.
+
+    A flight would end within the step of 10 ms, or after it (2 v/|a| = 4 and 12 ms).
+    """
+    for depth, waits in ((0.9 * OVERLAP, True), (1.1 * OVERLAP, False), (20.0, False)):
+        row = Row(restitution=0.5).moves(-depth, v, -10.0)
+        assert row.foresee()[1] == waits
+
+
 def test_a_glance_is_an_impact_at_a_slower_speed() -> None:
     """Past a ball the path of the contact bends: by v^2/r of two balls, and SLOW is GLANCING.
 
@@ -251,6 +264,25 @@ def test_springs_meet_a_gap_in_time_and_push_without_an_impact() -> None:
 
 
 FOLLOW = interpreted(make_follow(TURNS))
+
+
+def test_of_a_pair_that_stays_at_another_point_none_rebounds(rng) -> None:
+    """Told pair by pair, with sets: of pairs of one to four rows."""
+    kernel, seen = interpreted(make_let_rebound(SPEC)), set()
+    for _ in range(50):
+        contacts = np.zeros(12, contact_dtype(SPEC))
+        contacts["pair"] = np.sort(rng.integers(0, 6, 12))
+        contacts["phi"] = rng.choice([0.5, 2.0], 12) * TOUCHING
+        contacts["waits"] = before = rng.choice([0, 1, REBOUNDS], 12)
+        stays = (before == 0) & (contacts["phi"] <= TOUCHING)
+        kept = {*contacts["pair"][stays]}
+        leaves = before == REBOUNDS
+        gone = leaves & ~np.isin(contacts["pair"], list(kept))
+        expected = np.where(gone, 1, np.where(leaves, 0, before))
+        assert bool(kernel(records(contacts), 12)) == bool(gone.any())
+        assert contacts["waits"].tolist() == expected.tolist()
+        seen |= {bool(gone.any()), "kept" if (leaves & ~gone).any() else "none kept"}
+    assert seen == {True, False, "kept", "none kept"}
 
 
 def followed(
