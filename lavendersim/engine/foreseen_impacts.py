@@ -1,7 +1,7 @@
 """Impacts that the rest of a step may have, foreseen row by row (`effects.impact_order`).
 
 foresee      by the rate of a row's own gap: which rows wait, and when the next is due
-let_rebound  which of those that leave by a rebound do so as pairs
+let_rebound  which of those that fly between rebounds do so as pairs
 follow       pairs of which no row lasts: bodies that turn may meet with any of their features
 """
 
@@ -39,7 +39,7 @@ BENDS, GLANCING = 0.05, 1.0 / 64.0
 FALL = 1e-5
 # A contact that lasts has a gap of this share of what going round moves its surfaces by, at most.
 CLOSED = 1.0 / 64.0
-# CONTACT.waits of what leaves by a rebound, until it is known whether its pair does.
+# CONTACT.waits of what flies between rebounds, until it is known whether its pair does.
 REBOUNDS = 2
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
@@ -138,8 +138,8 @@ def make_foresee(spec: Spec) -> Any:
                 ahead = gap > 0.0 or (due >= FLIGHT * params.timestep and not inside)
                 if ahead and due < left:
                     contact.waits, contact.due = 1, due
-                elif ahead and v > 0.0 and e > 0.0 and contact.phi <= params.slop:
-                    contact.waits = REBOUNDS  # it leaves, and meets again later
+                elif ahead and e > 0.0 and contact.phi <= params.slop:
+                    contact.waits = REBOUNDS  # it flies, and meets later
         if turns:
             if (ahead or contact.waits == 1) and contact.due == NEVER and gap > 0.0:
                 # Surfaces that turn may come nearer by as much as this: their shapes decide.
@@ -155,9 +155,9 @@ def make_foresee(spec: Spec) -> Any:
 
 
 def make_let_rebound(spec: Spec) -> Any:
-    """Return `kernel(contacts, count) -> whether any waits` of what leaves by a rebound.
+    """Return `kernel(contacts, count) -> whether any waits` of what flies between rebounds.
 
-    Of a pair that stays where another point of it touches no point has left by itself. The rows of
+    Of a pair that stays where another point of it touches no point flies by itself. The rows of
     a pair stand together.
     """
 

@@ -172,6 +172,20 @@ def test_a_ball_that_falls_back_is_due_when_its_flight_ends() -> None:
         assert held.foresee()[2] == expected
 
 
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_what_will_rebound_after_the_part_flies_in_it(restitution: float) -> None:
+    """Across half of the slop at 0.1 mm/s, after 5 ms: a row would hold it where it is.
+
+    Without a rebound it is held: that it meets later changes no velocity.
+    """
+    for left, ahead in ((4e-3, restitution > 0.0), (6e-3, True)):
+        row = Row(restitution=restitution)
+        row.left = left
+        _, waits, due = row.moves(0.5 * SLOP, -1e-4, 0.0).foresee()
+        assert waits == ahead
+        assert due == (pytest.approx(5e-3, rel=1e-12) if left > 5e-3 else NEVER)
+
+
 @pytest.mark.parametrize("v", [0.02, 0.06])
 def test_what_is_far_inside_has_not_left_by_a_rebound(v: float) -> None:
     """A rope that is too long by itself, whose ends come nearer: it has a row all the same.
