@@ -109,6 +109,9 @@ def make_foresee(spec: Spec) -> Any:
             e = restitution_at(e, pair, speed)
         if meets:
             return is_impact(speed, least, dv, 0.0 if met else most, e, params)
+        if e > 0.0 and contact.phi <= params.slop and v > 0.0:
+            if 2.0 * v <= FLIGHT * max(-dv, 0.0) * params.timestep / left:
+                contact.rate = 0.0  # pressed back at once, it lies: an impact takes it along
         drawn = False  # as long as it is closed, however fast it opens
         if draws:
             drawn = is_drawn(contact, pair, params)

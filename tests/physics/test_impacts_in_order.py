@@ -38,7 +38,8 @@ class Cluster(NamedTuple):
         m, touch = np.array(self.mass), np.add(self.radius[1:], self.radius[:-1])
         while True:
             gaps, rates = np.diff(x) - touch, np.diff(v)
-            due = np.where(rates < -1e-12, np.maximum(gaps, 0.0) / -np.minimum(rates, -1e-12), np.inf)
+            speeds = np.maximum(-rates, 1e-12)  # slower ones are round-off
+            due = np.where(speeds > 1e-12, np.maximum(gaps, 0.0) / speeds, np.inf)
             first = int(np.argmin(due))
             if due[first] > seconds:
                 return v

@@ -172,6 +172,19 @@ def test_a_ball_that_falls_back_is_due_when_its_flight_ends() -> None:
         assert held.foresee()[2] == expected
 
 
+def test_what_parts_for_less_than_the_shortest_flight_lies() -> None:
+    """2 v/g against FLIGHT timesteps: an impact of its bodies takes along what lies."""
+    gravity = 10.0
+    for left in (STEP, 0.3 * STEP):
+        for share, phi, lies in ((0.99, 0.0, True), (1.01, 0.0, False), (0.99, 2.0 * SLOP, False)):
+            v = share * 0.5 * gravity * FLIGHT * STEP
+            for restitution in (0.0, 0.5):  # without a rebound it has not flown
+                row = Row(restitution=restitution)
+                row.left = left
+                row.moves(phi, v, -gravity).foresee()
+                assert row.contact["rate"] == (0.0 if lies and restitution else v)
+
+
 @pytest.mark.parametrize("restitution", [0.0, 0.5])
 def test_what_will_rebound_after_the_part_flies_in_it(restitution: float) -> None:
     """Across half of the slop at 0.1 mm/s, after 5 ms: a row would hold it where it is.
