@@ -95,9 +95,9 @@ def row(rate: int) -> str:
 
 
 def clusters(rate: int) -> str:
-    """Six balls in a row, e = 0.3: three of them come to rest by each other before they are struck.
+    """Six balls in a row, e = 0.3: three of them come to rest by each other before they are hit.
 
-    Theirs are ever smaller gaps, of 20 and 40 nm as the first ball strikes, and no resting contact.
+    Theirs are ever smaller gaps, 20 and 40 nm as the first ball meets them, and no contact.
     """
     rows = zip(CLUSTER.place, CLUSTER.velocity, CLUSTER.mass, CLUSTER.radius, strict=True)
     bodies = {f"b{k}": ball(r, m, (x, 0, 0), (v, 0, 0)) for k, (x, v, m, r) in enumerate(rows)}

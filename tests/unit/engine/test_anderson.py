@@ -52,7 +52,7 @@ def test_at_the_fixed_point_nothing_moves_and_nothing_is_divided_by_zero() -> No
     assert point == pytest.approx(END, rel=1e-12)
 
 
-def test_what_columns_lack_of_a_direction_is_not_multiplied() -> None:
+def test_what_is_hardly_new_in_a_column_is_not_multiplied() -> None:
     """A curved function of three numbers, with what solves leave: four columns cannot all be new.
 
     g contracts by 0.6 and its curvature by 1 at the start (0.3): near the end every round gains. A

@@ -294,7 +294,7 @@ FOLLOW = interpreted(make_follow(TURNS))
 
 
 def test_of_a_pair_that_stays_at_another_point_none_rebounds(rng) -> None:
-    """Told pair by pair, with sets: of pairs of one to four rows."""
+    """Against sets, pair by pair: of pairs of some rows."""
     kernel, seen = interpreted(make_let_rebound(SPEC)), set()
     for _ in range(50):
         contacts = np.zeros(12, contact_dtype(SPEC))
