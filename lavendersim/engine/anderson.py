@@ -7,7 +7,9 @@ changes dX of what went in and dF of the defects give the least squares
     min |f - dF s|,    x <- x + f - (dX + dF) s
 
 which ends a linear g of as many eigenvalues as there are columns. Columns are made orthogonal from
-the newest to the oldest; one that adds no direction is left out.
+the newest to the oldest; one that adds no direction is left out: what round-off and curvature leave
+of it would be multiplied by as much as it is shorter than its column (filtering by the angle,
+Pollock and Rebholz 2023).
 """
 
 from __future__ import annotations
@@ -23,8 +25,9 @@ from .spec import Spec
 DEPTH = 4
 # Columns, where no round has been made yet.
 NO_ROUND = -1
-# A column with less than this share left beside the newer ones adds no direction [-].
-NEW = 1e-6
+# A column with less than this share left beside the newer ones adds no direction [-]: it would
+# bring what the function is not linear by, and what solves leave, at most tenfold into the next.
+NEW = 0.1
 
 
 class FixedPoint(NamedTuple):

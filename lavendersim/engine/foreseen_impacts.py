@@ -1,7 +1,8 @@
 """Impacts that the rest of a step may have, foreseen row by row (`effects.impact_order`).
 
-foresee   by the rate of a row's own gap: which rows wait, and when the next is due
-follow    pairs of which no row lasts: bodies that turn may meet with any of their features
+foresee      by the rate of a row's own gap: which rows wait, and when the next is due
+let_rebound  which of those that fly between rebounds do so as pairs
+follow       pairs of which no row lasts: bodies that turn may meet with any of their features
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from .approach import (
     CREEP,
     ELSEWHERE,
     NEVER,
+    OVERLAP,
     make_bend,
     make_bend_of_rope,
     make_change_ahead,
@@ -39,7 +41,7 @@ BENDS, GLANCING = 0.05, 1.0 / 64.0
 FALL = 1e-5
 # A contact that lasts has a gap of this share of what going round moves its surfaces by, at most.
 CLOSED = 1.0 / 64.0
-# CONTACT.waits of what leaves by a rebound, until it is known whether its pair does (`order`).
+# CONTACT.waits of what flies between rebounds, until it is known whether its pair does.
 REBOUNDS = 2
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
@@ -109,6 +111,9 @@ def make_foresee(spec: Spec) -> Any:
             e = restitution_at(e, pair, speed)
         if meets:
             return is_impact(speed, least, dv, 0.0 if met else most, e, params)
+        if e > 0.0 and contact.phi <= params.slop and v > 0.0:
+            if 2.0 * v <= FLIGHT * max(-dv, 0.0) * params.timestep / left:
+                contact.rate = 0.0  # pressed back at once, it lies: an impact takes it along
         drawn = False  # as long as it is closed, however fast it opens
         if draws:
             drawn = is_drawn(contact, pair, params)
@@ -133,11 +138,13 @@ def make_foresee(spec: Spec) -> Any:
             if is_impact(speed, least, dv, slow, e, params):
                 # The root that comes first, in the form that does not cancel.
                 due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
-                ahead = gap > 0.0 or due >= FLIGHT * params.timestep
+                # What is far inside has not left by a rebound: a rope that is too long pulls.
+                inside = contact.phi < -OVERLAP
+                ahead = gap > 0.0 or (due >= FLIGHT * params.timestep and not inside)
                 if ahead and due < left:
                     contact.waits, contact.due = 1, due
-                elif ahead and v > 0.0 and e > 0.0 and contact.phi <= params.slop:
-                    contact.waits = REBOUNDS  # it leaves, and meets again later
+                elif ahead and e > 0.0 and contact.phi <= params.slop:
+                    contact.waits = REBOUNDS  # it flies, and meets later
         if turns:
             if (ahead or contact.waits == 1) and contact.due == NEVER and gap > 0.0:
                 # Surfaces that turn may come nearer by as much as this: their shapes decide.
@@ -150,6 +157,30 @@ def make_foresee(spec: Spec) -> Any:
         return False
 
     return kernel(foresee, spec)
+
+
+def make_let_rebound(spec: Spec) -> Any:
+    """Return `kernel(contacts, count) -> whether any waits` of what flies between rebounds.
+
+    Of a pair that stays where another point of it touches no point flies by itself. The rows of
+    a pair stand together.
+    """
+
+    def let_rebound(contacts, count):
+        waiting, first = False, 0
+        while first < count:
+            pair, last, stays = contacts[first].pair, first, False
+            while last < count and contacts[last].pair == pair:
+                stays = stays or (contacts[last].phi <= TOUCHING and contacts[last].waits == 0)
+                last += 1
+            for c in range(first, last):
+                if contacts[c].waits == REBOUNDS:
+                    contacts[c].waits = 0 if stays else 1
+                    waiting = waiting or not stays
+            first = last
+        return waiting
+
+    return kernel(let_rebound, spec)
 
 
 def make_follow(spec: Spec) -> Any:

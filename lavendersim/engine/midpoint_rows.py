@@ -32,6 +32,9 @@ CALM = 100.0 * SAME
 # A contact lasts that begins to approach or part no faster than these shares: of what forces
 # change in a step, and of what the turning of its surfaces changes in half a step.
 FORCED, TURNED = 0.05, 0.5
+# One that did not last in the step before parts by what the turning changed in it, twice that of
+# half a step: were that too fast, it would never last.
+BEFORE = 2.5
 # It may have a gap of this share of what the turning of its surfaces moves them by.
 AJAR = 0.25
 # Ends of a joint that part by more than this share of what their turning parts them by half a step
@@ -220,11 +223,12 @@ def make_shift(spec: Spec) -> Any:
         ajar = max(contact.phi - params.slop, 0.0)
         forced = abs(contact.dv_n) * params.timestep / params.dt
         turned = TURNED * abs(b) + CALM
+        left = BEFORE * (contact.middle_n - contact.begin_n) + CALM
         contact.lasts = 0
         soft = False
         if springs:
             soft = contact.spring_compliance > 0.0
-        closes, opens = FORCED * forced + turned, turned
+        closes, opens = FORCED * forced + turned, max(turned, left)
         if ropes:
             if contact.span > 0.0:
                 closes = opens = FORCED * contact.stirred + turned

@@ -16,14 +16,17 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
+from unittest.mock import patch
 
 from fuzz_laws import broken, loaded, run, text_of
 from fuzz_scenes import FULL, Drawn, configs, plans
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
+from hypothesis.internal.conjecture import providers
 
 CHUNK = 500  # runs from one seed: what an interruption loses at most
 HEADING = "engine,seed,chunk,runs,finds,seconds\n"
@@ -34,6 +37,19 @@ class Find(NamedTuple):
 
     tree: dict[str, Any]
     laws: list[str]
+
+
+@contextmanager
+def without_constants_of_modules() -> Iterator[None]:
+    """Draw no number because a module has it: an edit elsewhere would draw all configs anew."""
+    cache = getattr(providers, "CONSTANTS_CACHE", None)  # neither is there in releases before
+    if cache is None or not hasattr(providers, "_get_local_constants"):
+        yield
+        return
+    cache.cache.clear()
+    with patch.object(providers, "_get_local_constants", providers.Constants):
+        yield
+    cache.cache.clear()
 
 
 def drawn(strategy: Any, count: int, take: Callable[[Any], None], seed: int | str) -> None:
@@ -51,7 +67,8 @@ def drawn(strategy: Any, count: int, take: Callable[[Any], None], seed: int | st
     def each(value: Any) -> None:
         take(value)
 
-    each()
+    with without_constants_of_modules():
+        each()
 
 
 def drawn_plans(count: int, seed: int = 0) -> list[Drawn]:

@@ -96,7 +96,7 @@ def make_order(spec: Spec) -> Any:
         make_expect,
     )
     from ..flush_contacts import make_drop_flush
-    from ..foreseen_impacts import REBOUNDS, make_follow, make_foresee
+    from ..foreseen_impacts import make_follow, make_foresee, make_let_rebound
     from ..impact_location import make_locate
     from ..impact_rows import make_keep_motion, make_keep_present, make_mark_impact
     from ..row_terms import row_terms
@@ -150,22 +150,7 @@ def make_order(spec: Spec) -> Any:
 
     begin_order = kernel(begin_order, spec)
 
-    def let_rebound(contacts, count):
-        # Of a pair that touches elsewhere, too, no point has left by itself; whether any waits.
-        waiting = False
-        for c in range(count):
-            contact = contacts[c]
-            if contact.waits == REBOUNDS:
-                for d in range(count):
-                    other = contacts[d]
-                    if other.pair == contact.pair and other.phi <= TOUCHING and other.waits == 0:
-                        contact.waits = 0
-        for c in range(count):
-            if contacts[c].waits == REBOUNDS:
-                contacts[c].waits, waiting = 1, True
-        return waiting
-
-    rebounding: Any = kernel(let_rebound, spec) if rebounds else None
+    let_rebound: Any = make_let_rebound(spec) if rebounds else None
 
     def until_stop(state, count, length, params, counters):
         # The part that ends where sliding stops, if that comes first.
@@ -211,7 +196,7 @@ def make_order(spec: Spec) -> Any:
             if contact.waits == 1:
                 waiting = True
         if rebounds:
-            waiting = rebounding(contacts, count) or waiting
+            waiting = let_rebound(contacts, count) or waiting
         if not (meets or waiting):
             return count, until_stop(state, count, left, params, counters)
         rows = touching

@@ -52,6 +52,29 @@ def test_at_the_fixed_point_nothing_moves_and_nothing_is_divided_by_zero() -> No
     assert point == pytest.approx(END, rel=1e-12)
 
 
+def test_what_is_hardly_new_in_a_column_is_not_multiplied() -> None:
+    """A curved function of three numbers, with what solves leave: four columns cannot all be new.
+
+    g contracts by 0.6 and its curvature by 1 at the start (0.3): near the end every round gains. A
+    column of which a share s is new takes the noise of 1e-10 1/s times into the next point.
+    """
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        factors, bends = rng.normal(size=(3, 3)), rng.normal(size=(3, 3, 3))
+        factors, bends = 0.6 * factors / np.linalg.norm(factors, 2), bends / np.linalg.norm(bends)
+        fixed, columns, least = allocate_fixed_point(3), NO_ROUND, np.inf
+        fixed.point[:] = rng.normal(size=3) * 0.17
+        for _ in range(16):
+            x = fixed.point
+            led_to = factors @ x + np.einsum("ijk,j,k", bends, x, x)
+            fixed.defect[:] = led_to - x + 1e-10 * rng.normal(size=3)
+            missed = float(np.linalg.norm(fixed.defect))
+            assert least > 1e-3 or missed < max(least, 1e-8)
+            least = min(least, missed)
+            columns = BRING_ON(fixed, 3, columns)
+        assert least < 1e-9
+
+
 def test_a_number_that_is_none_moves_no_other() -> None:
     """A body that diverges does not take the others along; what is NaN stays so."""
     fixed, columns = allocate_fixed_point(2), NO_ROUND

@@ -14,7 +14,7 @@ from drawn_contacts import put_vector, random_frame
 from interpreted import interpreted, records
 from plain_facts import one_row
 
-from lavendersim.engine.approach import CREEP, ELSEWHERE, GUESSED, NEVER
+from lavendersim.engine.approach import CREEP, ELSEWHERE, GUESSED, NEVER, OVERLAP
 from lavendersim.engine.foreseen_impacts import (
     BENDS,
     CLOSED,
@@ -22,9 +22,11 @@ from lavendersim.engine.foreseen_impacts import (
     FLIGHT,
     GLANCING,
     LAST,
+    REBOUNDS,
     make_follow,
     make_foresee,
     make_is_impact,
+    make_let_rebound,
 )
 from lavendersim.engine.record_layout import allocate_bodies, allocate_pairs, contact_dtype
 from lavendersim.engine.records import MOTION, PLANE, SPHERE, TOUCHING, dtype
@@ -170,6 +172,44 @@ def test_a_ball_that_falls_back_is_due_when_its_flight_ends() -> None:
         assert held.foresee()[2] == expected
 
 
+def test_what_parts_for_less_than_the_shortest_flight_lies() -> None:
+    """2 v/g against FLIGHT timesteps: an impact of its bodies takes along what lies."""
+    gravity = 10.0
+    for left in (STEP, 0.3 * STEP):
+        for share, phi, lies in ((0.99, 0.0, True), (1.01, 0.0, False), (0.99, 2.0 * SLOP, False)):
+            v = share * 0.5 * gravity * FLIGHT * STEP
+            for restitution in (0.0, 0.5):  # without a rebound it has not flown
+                row = Row(restitution=restitution)
+                row.left = left
+                row.moves(phi, v, -gravity).foresee()
+                assert row.contact["rate"] == (0.0 if lies and restitution else v)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_what_will_rebound_after_the_part_flies_in_it(restitution: float) -> None:
+    """Across half of the slop at 0.1 mm/s, after 5 ms: a row would hold it where it is.
+
+    Without a rebound it is held: that it meets later changes no velocity.
+    """
+    for left, ahead in ((4e-3, restitution > 0.0), (6e-3, True)):
+        row = Row(restitution=restitution)
+        row.left = left
+        _, waits, due = row.moves(0.5 * SLOP, -1e-4, 0.0).foresee()
+        assert waits == ahead
+        assert due == (pytest.approx(5e-3, rel=1e-12) if left > 5e-3 else NEVER)
+
+
+@pytest.mark.parametrize("v", [0.02, 0.06])
+def test_what_is_far_inside_has_not_left_by_a_rebound(v: float) -> None:
+    """A rope that is too long by itself, whose ends come nearer: it has a row all the same.
+
+    A flight would end within the step of 10 ms, or after it (2 v/|a| = 4 and 12 ms).
+    """
+    for depth, waits in ((0.9 * OVERLAP, True), (1.1 * OVERLAP, False), (20.0, False)):
+        row = Row(restitution=0.5).moves(-depth, v, -10.0)
+        assert row.foresee()[1] == waits
+
+
 def test_a_glance_is_an_impact_at_a_slower_speed() -> None:
     """Past a ball the path of the contact bends: by v^2/r of two balls, and SLOW is GLANCING.
 
@@ -251,6 +291,25 @@ def test_springs_meet_a_gap_in_time_and_push_without_an_impact() -> None:
 
 
 FOLLOW = interpreted(make_follow(TURNS))
+
+
+def test_of_a_pair_that_stays_at_another_point_none_rebounds(rng) -> None:
+    """Against sets, pair by pair: of pairs of some rows."""
+    kernel, seen = interpreted(make_let_rebound(SPEC)), set()
+    for _ in range(50):
+        contacts = np.zeros(12, contact_dtype(SPEC))
+        contacts["pair"] = np.sort(rng.integers(0, 6, 12))
+        contacts["phi"] = rng.choice([0.5, 2.0], 12) * TOUCHING
+        contacts["waits"] = before = rng.choice([0, 1, REBOUNDS], 12)
+        stays = (before == 0) & (contacts["phi"] <= TOUCHING)
+        kept = {*contacts["pair"][stays]}
+        leaves = before == REBOUNDS
+        gone = leaves & ~np.isin(contacts["pair"], list(kept))
+        expected = np.where(gone, 1, np.where(leaves, 0, before))
+        assert bool(kernel(records(contacts), 12)) == bool(gone.any())
+        assert contacts["waits"].tolist() == expected.tolist()
+        seen |= {bool(gone.any()), "kept" if (leaves & ~gone).any() else "none kept"}
+    assert seen == {True, False, "kept", "none kept"}
 
 
 def followed(

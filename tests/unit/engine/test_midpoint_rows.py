@@ -15,7 +15,16 @@ from interpreted import interpreted, records
 from plain_facts import one_row
 
 from lavendersim.engine import midpoint_rows
-from lavendersim.engine.midpoint_rows import AJAR, CALM, FORCED, SAME, SLIDES, STILL, TURNED
+from lavendersim.engine.midpoint_rows import (
+    AJAR,
+    BEFORE,
+    CALM,
+    FORCED,
+    SAME,
+    SLIDES,
+    STILL,
+    TURNED,
+)
 from lavendersim.engine.record_layout import allocate_bodies, allocate_velocities
 from lavendersim.engine.records import MOTION, PLANE, SPHERE, dtype
 from lavendersim.engine.spec import Spec
@@ -77,7 +86,10 @@ def test_the_mean_normal_velocity_of_what_lasts_is_what_approaches_at_the_start(
 
 
 def test_a_contact_lasts_that_begins_no_faster_than_forces_or_turning_change_it(rng) -> None:
-    """By FORCED of forces in a timestep, approaching, and TURNED of b, in both directions."""
+    """By FORCED of forces in a timestep, approaching, and TURNED of b, in both directions.
+
+    Parting, also by BEFORE of what turning adds in half a step: begin <= B (middle - begin) + CALM.
+    """
     for left in (DT, 0.5 * DT):
         for forced, middle in ((3.0, 0.0), (0.0, 2.0), (3.0, 2.0)):
             for sign in (-1.0, 1.0):
@@ -86,11 +98,22 @@ def test_a_contact_lasts_that_begins_no_faster_than_forces_or_turning_change_it(
                 limit = gain + TURNED * middle + CALM
                 if sign < 0.0:
                     limit /= 1.0 - TURNED
+                else:
+                    limit = max(limit, (BEFORE * middle + CALM) / (1.0 + BEFORE))
                 for share in (1.0 - HAIR, 1.0 + HAIR):
                     row = Row(rng)
                     row.turned_by(middle)
                     row.begins(begin_n=sign * share * limit, dv_n=-forced).shift(left)
                     assert row.contact.lasts == (share < 1.0), (forced, middle, sign)
+
+
+def test_what_a_step_that_does_not_last_leaves_lasts_in_the_next(rng) -> None:
+    """Its edge turns evenly: at the end it parts by twice what half a step adds then."""
+    for turns, lasts in ((2.0, 1), (3.0, 0)):
+        row = Row(rng)
+        row.turned_by(turns + 1.0)
+        row.begins(begin_n=turns, dv_n=-1.0).shift()
+        assert row.contact.lasts == lasts
 
 
 def test_a_row_that_does_not_last_is_left_alone(rng) -> None:

@@ -31,7 +31,7 @@ scene:
 numerics: {timestep: 1/240}
 duration: 0.05
 """
-STANDS, THROWN = LOG % (0.149, 0), LOG % (0.4, -15)
+STANDS, THROWN = LOG % (0.149, 0), LOG % (0.4, -20)
 # In another process: kernels of this one have the budget that they were made with.
 BUDGET = """
 import sys
