@@ -81,6 +81,7 @@ def test_every_property_can_be_written_of_a_pair() -> None:
     written = {key.name: 0.125 for key in SURFACE_KEYS}
     line = json.dumps({"between": ["steel", "ice"], **written}).replace('"', "")
     text = SCENE.replace("{between: [steel, ice], friction: 0.02, restitution: 0}", line)
+    text = text.replace("surface: wood}", "surface: wood, grain: [1, 0, 0]}")  # for `across_grain`
     pair = between("steel_a", "floor", text)
     assert {key.name: getattr(pair, key.name) for key in SURFACE_KEYS} == written
 
