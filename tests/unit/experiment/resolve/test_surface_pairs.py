@@ -81,7 +81,7 @@ GRAIN = "across_grain"  # needs a body with a grain, beside which nothing may ro
 
 
 @pytest.mark.parametrize(
-    "names", [[key.name for key in SURFACE_KEYS if key.name != GRAIN], [GRAIN]]
+    "names", [[key.name for key in SURFACE_KEYS if key.name != GRAIN], ["friction", GRAIN]]
 )
 def test_every_property_can_be_written_of_a_pair(names: list[str]) -> None:
     written = dict.fromkeys(names, 0.125)
