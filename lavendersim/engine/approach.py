@@ -215,15 +215,15 @@ def make_slowest(spec: Spec) -> Any:
     return kernel(slowest, spec)
 
 
-def make_bend(spec: Spec) -> Any:
-    """Return `kernel(contact, bodies, motion) -> a`, at most, by which its gap bends [m/s^2].
+def make_gap_acceleration(spec: Spec) -> Any:
+    """Return `kernel(contact, bodies, motion) -> a` of its gap, at most, with free motion [m/s^2].
 
     A normal turns with its bodies, and as they go round each other.
     """
     relative_speed, turns = make_relative_speed(spec), step_terms(spec).turns
     ropes = row_terms(spec).taut
 
-    def bend(contact, bodies, motion):
+    def gap_acceleration(contact, bodies, motion):
         ma, mb = motion[contact.a], motion[contact.b]
         one, other, rate = bodies[contact.a], bodies[contact.b], 0.0
         if one.shape != PLANE and other.shape != PLANE:
@@ -235,10 +235,10 @@ def make_bend(spec: Spec) -> Any:
             rate += length(Vec3(ma.wx, ma.wy, ma.wz)) + length(Vec3(mb.wx, mb.wy, mb.wz))
         return rate * relative_speed(contact, bodies, motion)
 
-    return kernel(bend, spec)
+    return kernel(gap_acceleration, spec)
 
 
-def make_bend_of_rope(spec: Spec) -> Any:
+def make_gap_acceleration_of_rope(spec: Spec) -> Any:
     """Return `kernel(end_a, end_b, bodies, motion) -> a` of its gap in free motion [m/s^2].
 
     phi'' = -|d|'',  |d|'' = (|d'|^2 - (d'.u)^2)/|d| + u . (w_B x (w_B x r_B) - w_A x (w_A x r_A)),
@@ -246,21 +246,21 @@ def make_bend_of_rope(spec: Spec) -> Any:
     """
     turns = step_terms(spec).turns
 
-    def bend_of_rope(end_a, end_b, bodies, motion):
+    def acceleration_of_rope(end_a, end_b, bodies, motion):
         ma, mb = motion[end_a.owner], motion[end_b.owner]
         d, v = minus(position(end_b), position(end_a)), relative_velocity(ma, mb)
         size = length(d)
         if size == 0.0:
             return 0.0
         u = scaled(1.0 / size, d)
-        bent = 0.0
+        acceleration = 0.0
         if turns:
             wa, wb = Vec3(ma.wx, ma.wy, ma.wz), Vec3(mb.wx, mb.wy, mb.wz)
             turn_a = cross(wa, minus(position(end_a), position(bodies[end_a.owner])))
             turn_b = cross(wb, minus(position(end_b), position(bodies[end_b.owner])))
             v = plus(v, minus(turn_b, turn_a))
-            bent = dot(u, minus(cross(wb, turn_b), cross(wa, turn_a)))
+            acceleration = dot(u, minus(cross(wb, turn_b), cross(wa, turn_a)))
         along = dot(u, v)
-        return -bent - (dot(v, v) - along * along) / size
+        return -acceleration - (dot(v, v) - along * along) / size
 
-    return kernel(bend_of_rope, spec)
+    return kernel(acceleration_of_rope, spec)

@@ -15,10 +15,10 @@ from .approach import (
     ELSEWHERE,
     NEVER,
     OVERLAP,
-    make_bend,
-    make_bend_of_rope,
     make_change_ahead,
     make_forced,
+    make_gap_acceleration,
+    make_gap_acceleration_of_rope,
     make_nearest_rate,
     make_relative_speed,
     make_slowest,
@@ -34,9 +34,9 @@ from .step_terms import step_terms
 FLIGHT = 1.0 / 64.0
 # Slowest impact without a rebound, in what forces change in a step.
 SLOW = 1.0
-# Where the path of a contact bends by more than this share of what forces change, it is the motion
-# that brings surfaces together: they meet at a slower speed, in the same measure.
-BENDS, GLANCING = 0.05, 1.0 / 64.0
+# Where a gap accelerates by more than this share of what forces change, it is the motion that
+# brings surfaces together: they meet at a slower speed, in the same measure.
+CURVED, GLANCING = 0.05, 1.0 / 64.0
 # So it is where more than this closes [m]: what solves that do not converge leave open is less.
 FALL = 1e-5
 # A contact that lasts has a gap of this share of what going round moves its surfaces by, at most.
@@ -74,12 +74,12 @@ def make_foresee(spec: Spec) -> Any:
     forced, slowest = make_forced(spec), make_slowest(spec)
     change_ahead = make_change_ahead(spec)
     relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
-    turns, bend = step_terms(spec).turns, make_bend(spec)
+    turns, gap_acceleration = step_terms(spec).turns, make_gap_acceleration(spec)
     restitution, compliance = step_terms(spec).rebounds, row_terms(spec).compliant
     springs = row_terms(spec).elastic
     draws, is_drawn = made_once(spec, "is_drawn")
     overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
-    bend_of_rope: Any = make_bend_of_rope(spec) if ropes else None
+    acceleration_of_rope: Any = make_gap_acceleration_of_rope(spec) if ropes else None
     falls, restitution_at = made_once(spec, "restitution_at")
 
     def foresee(contact, pair, bodies, motion, params, met):
@@ -93,12 +93,13 @@ def make_foresee(spec: Spec) -> Any:
         if contact.phi <= TOUCHING and abs(v) <= CREEP:
             return False
         (dv, most), least = forced(contact, motion), slowest(contact, bodies, motion)
-        bent = 0.0
+        swung = 0.0  # what a rope's rate changes as it swings round [m/s]
         if ropes:
             if contact.span > 0.0:
-                bent = bend_of_rope(bodies[pair.a], bodies[pair.b], bodies, motion) * left
-                dv, most = dv + bent, most + abs(bent)
-        a, e = (change_ahead(contact, motion) + bent) / left, 0.0
+                end_a, end_b = bodies[pair.a], bodies[pair.b]
+                swung = acceleration_of_rope(end_a, end_b, bodies, motion) * left
+                dv, most = dv + swung, most + abs(swung)
+        a, e = (change_ahead(contact, motion) + swung) / left, 0.0
         if restitution:
             e = pair.restitution
         gap = contact.phi if contact.phi > TOUCHING else 0.0
@@ -122,9 +123,9 @@ def make_foresee(spec: Spec) -> Any:
         # rebound has to meet again as an impact.
         pressed = most
         if turns and e == 0.0:
-            bends = bend(contact, bodies, motion) * left
-            if contact.phi <= params.slop + CLOSED * bends * left:
-                pressed += bends
+            turned = gap_acceleration(contact, bodies, motion) * left
+            if contact.phi <= params.slop + CLOSED * turned * left:
+                pressed += turned
         leaves = v > least + pressed and contact.phi + left * (v - 0.5 * pressed) > params.slop
         if overlooks:
             leaves = leaves and pair.whole == 0
@@ -132,7 +133,7 @@ def make_foresee(spec: Spec) -> Any:
             contact.waits = 1
         ahead, slow = False, most
         if gap > params.slop:
-            if bend(contact, bodies, motion) * left > BENDS * most or gap > FALL:
+            if gap_acceleration(contact, bodies, motion) * left > CURVED * most or gap > FALL:
                 slow = GLANCING * most
         if squared > 0.0 and (v < 0.0 or a < 0.0):
             if is_impact(speed, least, dv, slow, e, params):

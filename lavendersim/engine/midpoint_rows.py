@@ -44,11 +44,11 @@ TORN = 0.5
 SLIDES = 2.0
 
 
-def make_stirs(spec: Spec) -> Any:
+def make_is_moving(spec: Spec) -> Any:
     """Return `kernel(bodies, motion) -> whether anything moves as the step begins`."""
     turns = step_terms(spec).turns
 
-    def stirs(bodies, motion):
+    def is_moving(bodies, motion):
         for i in range(motion.shape[0]):
             m = motion[i]
             squared = m.vx * m.vx + m.vy * m.vy + m.vz * m.vz
@@ -60,7 +60,7 @@ def make_stirs(spec: Spec) -> Any:
                 return True
         return False
 
-    return kernel(stirs, spec)
+    return kernel(is_moving, spec)
 
 
 def make_is_turning(spec: Spec) -> Any:

@@ -19,7 +19,7 @@ from .effects import has_hook, made_by, made_once
 from .integrate import keeps_motion, make_classify
 from .joint_turn import make_joint_velocity
 from .midpoint_passes import make_midpoint_passes, make_stand_up
-from .midpoint_rows import make_lasting, make_stirs
+from .midpoint_rows import make_is_moving, make_lasting
 from .overlooked_points import make_look_over
 from .records import INSTANT
 from .row_terms import make_acts, row_terms
@@ -76,7 +76,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
 
     ordered, centred = step_terms(spec).ordered_impacts, step_terms(spec).centred
     lasting: Any = make_lasting(spec) if centred else None
-    stirs: Any = make_stirs(spec) if centred else None
+    is_moving: Any = make_is_moving(spec) if centred else None
     bilateral = row_terms(spec).bilateral
     joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
     midpoint_passes: Any = None
@@ -132,7 +132,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                         parting = joint_velocity(contact, ma, mb)
                         contact.parting_x, contact.parting_y = parting.x, parting.y
                         contact.parting_z = parting.z
-            moving = lasts and stirs(bodies, motion)
+            moving = lasts and is_moving(bodies, motion)
             if moving:
                 for i in range(velocities.shape[0]):
                     workspace.middle.free[i] = velocities[i]

@@ -12,7 +12,7 @@ Slow meetings are no impacts (`foreseen_impacts`): with a rebound that would end
 steps, or without rebound below SLOW times what forces change in a step (GLANCING of that across a
 gap, where the path of the contact bends). They are contacts of the motion (`impact_time`). An
 impact takes along what touches and does not part (`impact_rows`), and nothing else. One may have
-CROWD rows of contacts, and a step has WORK of them to spend on its parts, or REBOUND where
+MOST_ROWS rows of contacts, and a step has WORK of them to spend on its parts, or REBOUND where
 something rebounds: there impacts without order may win energy. The rest of one that has spent them
 or meets a larger impact, or whose bodies overlap, is made in one part: its impacts at their times
 but without their order (/step: unordered).
@@ -36,9 +36,9 @@ REBOUND = 2048
 # Of gravity along a plane: what is left of the normal's last digits.
 ROUND_OFF = 1e-12
 # So many contacts that a part looks at, and does not meet, count as one row.
-LOOKS = 16
+CANDIDATES_A_ROW = 16
 # An impact of more rows is not made by itself.
-CROWD = 64
+MOST_ROWS = 64
 
 
 def slides_back(facts: Facts) -> bool:
@@ -202,8 +202,8 @@ def make_order(spec: Spec) -> Any:
         rows = touching
         if meets:
             rows = mark_impact(contacts, count, state.pairs, bodies, motion, params.slop)
-        counters.spent += 1 + rows + count // LOOKS
-        if counters.spent > work or (meets and rows > CROWD):
+        counters.spent += 1 + rows + count // CANDIDATES_A_ROW
+        if counters.spent > work or (meets and rows > MOST_ROWS):
             counters.unordered = 1
             return count, left
         if meets:

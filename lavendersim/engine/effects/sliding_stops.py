@@ -9,8 +9,8 @@ Only what passes through 0 is a stop: a slip that turns aside has no instant. Sp
 torsional friction resists stop likewise. A stop missed by a change of forces is of second order;
 what is left of the slip then stops by itself.
 
-Contacts of a whole pile stop in every step: in a step of more than CROWD rows nothing is looked at,
-and its stops may cost SPENT rows.
+Contacts of a whole pile stop in every step: in a step of more than MOST_ROWS rows nothing is
+looked at, and its stops may cost SPENT rows.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .effect import Effect, Fields, Hooks, kernel
 from .impact_order import decide as has_parts
 
 # Of a step with more rows no stop is looked for.
-CROWD = 64
+MOST_ROWS = 64
 # So many rows of contacts may be solved again in a step, for its stops.
 SPENT = 128
 # What is left of a slip where it is least, as a share of it, if that is a stop.
@@ -155,7 +155,7 @@ def make_first_stop(spec: Spec) -> Any:
         turning_stops = kernel(when_turning_stops, spec)
 
     def first_stop(state, count, params, counters):
-        if count > CROWD or counters.spent + 1 + count > SPENT:
+        if count > MOST_ROWS or counters.spent + 1 + count > SPENT:
             return NEVER
         bodies, motion, pairs, first = state.bodies, state.motion, state.pairs, NEVER
         left, shortest = params.dt, SHORT * params.timestep

@@ -42,8 +42,8 @@ INEXACT = 0.5
 EASE, LEAST = 0.98, 1e-3
 # Round-off of a step's curvature, as a share [-].
 ROUND_OFF = 1e-9
-# Sweeps between two looks at the residual.
-LOOK_EVERY = 8
+# Sweeps between two evaluations of the residual.
+RESIDUAL_EVERY = 8
 
 
 class StepSums(NamedTuple):
@@ -197,7 +197,9 @@ def make(spec: Spec) -> Iteration:
         return inf, Momentum(carry.aim, theta, momentum, beta)
 
     return Iteration(
-        kernel(sweep_accelerated, spec), prepare=kernel(prepare, spec), look_every=LOOK_EVERY
+        kernel(sweep_accelerated, spec),
+        prepare=kernel(prepare, spec),
+        residual_every=RESIDUAL_EVERY,
     )
 
 

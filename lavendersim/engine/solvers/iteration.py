@@ -39,15 +39,16 @@ class Iteration(NamedTuple):
         did not end the solve, the last one too; None: nothing.
     finish: kernel(system, workspace, carry), before the residual is measured; None: the sweeps
         keep impulses in the records of contacts, and the velocities consistent with them.
-    look_every: sweeps between two looks at the residual, one at the start included; 0: only the
-        sweeps' changes say when. Methods whose changes may be small far from the solution need it.
+    residual_every: sweeps between two evaluations of the residual, one at the start included; 0:
+        only the sweeps' changes say when. Methods whose changes may be small far from the solution
+        need it.
     """
 
     sweep: Any
     prepare: Any = None
     proceed: Any = None
     finish: Any = None
-    look_every: int = 0
+    residual_every: int = 0
 
 
 def make_solve(spec: Spec, name: str, iteration: Iteration) -> Any:
@@ -60,35 +61,35 @@ def make_solve(spec: Spec, name: str, iteration: Iteration) -> Any:
     prepare = _make_carry(spec) if iteration.prepare is None else iteration.prepare
     sweep, proceed, finish = iteration.sweep, iteration.proceed, iteration.finish
     proceeds, finishes = proceed is not None, finish is not None
-    every, looks = iteration.look_every, iteration.look_every > 0
+    every, stops_early = iteration.residual_every, iteration.residual_every > 0
 
     def solve(system, workspace, params, counters, residual_rows):
         contacts, count, velocities = system.contacts, system.count, system.velocities
         carry = prepare(system, workspace, params, counters)
         largest, worst, measured = 0.0, -1, False
-        if looks or record_residuals:
+        if stops_early or record_residuals:
             largest, worst = residual(contacts, count, velocities)
             measured = True
         if record_residuals:
             record_residual(params, counters, residual_rows, 0, largest)
         sweeps, ends = 0, False
-        if looks:
+        if stops_early:
             ends = largest <= carry.aim or largest != largest
         while sweeps < params.sweeps and not ends:
             greatest, carry = sweep(system, workspace, params, counters, carry)
             sweeps += 1
             over = greatest == 0.0 or greatest != greatest
-            look = over or greatest <= carry.aim
-            if looks:
-                look = look or record_residuals or sweeps % every == 0
-            measured = look or record_residuals
+            evaluates = over or greatest <= carry.aim
+            if stops_early:
+                evaluates = evaluates or record_residuals or sweeps % every == 0
+            measured = evaluates or record_residuals
             if measured:
                 if finishes:
                     finish(system, workspace, carry)
                 largest, worst = residual(contacts, count, velocities)
             if record_residuals:
                 record_residual(params, counters, residual_rows, sweeps, largest)
-            if look:
+            if evaluates:
                 ends = over or largest <= carry.aim or largest != largest
             if proceeds:
                 if not ends:

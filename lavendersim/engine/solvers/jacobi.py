@@ -26,8 +26,8 @@ CONTACT_FIELDS = [
     ("change_1", "f8"),
     ("change_2", "f8"),
 ]
-# Sweeps between two looks at the residual.
-LOOK_EVERY = 8
+# Sweeps between two evaluations of the residual.
+RESIDUAL_EVERY = 8
 
 
 def make_update(spec: Spec) -> Any:
@@ -119,7 +119,7 @@ def make(spec: Spec) -> Iteration:
         return greatest, carry
 
     return Iteration(
-        kernel(sweep_at_once, spec), prepare=kernel(prepare, spec), look_every=LOOK_EVERY
+        kernel(sweep_at_once, spec), prepare=kernel(prepare, spec), residual_every=RESIDUAL_EVERY
     )
 
 

@@ -28,7 +28,7 @@ def make(spec: Spec) -> Iteration:
             greatest = inf
         return greatest, carry
 
-    return Iteration(kernel(sweep_in_order, spec), look_every=1 if spec.tolerance else 0)
+    return Iteration(kernel(sweep_in_order, spec), residual_every=1 if spec.tolerance else 0)
 
 
 SOLVER = Solver(name="projected_gauss_seidel", iteration=make)

@@ -109,13 +109,13 @@ def test_a_plane_has_no_size_but_an_arm(rng) -> None:
 
 def test_the_gap_of_two_balls_bends_no_faster_than_the_bound() -> None:
     """Two balls pass by: d = |c + v t| - 2 r, d'' = v^2/|c| at the nearest, centres 2 r apart."""
-    bend = interpreted(approach.make_bend(STILL))
+    gap_acceleration = interpreted(approach.make_gap_acceleration(STILL))
     radius, speed = 0.5, 3.0
     bodies = [one_row(shape=SPHERE, bound=radius)] * 2
     zero = {**vector_fields("w", (0, 0, 0))}
     motion = [one_row(**vector_fields("v", v), **zero) for v in ((0, 0, 0), (speed, 0, 0))]
     contact = one_row(a=0, b=1)
-    found = bend(contact, bodies, motion)
+    found = gap_acceleration(contact, bodies, motion)
     assert found == pytest.approx(speed**2 / radius, rel=1e-15)
     h, c = 1e-4, np.array([0.0, 2.0 * radius])
     gaps = [np.linalg.norm(c + np.array([speed * t, 0.0])) for t in (-h, 0.0, h)]
@@ -123,9 +123,9 @@ def test_the_gap_of_two_balls_bends_no_faster_than_the_bound() -> None:
     # Past a plane: its normal stays, and without a spin nothing bends.
     plane = one_row(shape=PLANE, bound=0.0, **vector_fields("", (0, 0, 0)))
     bodies, contact = [plane, bodies[0]], one_row(a=0, b=1, **vector_fields("", (0.0, 0.0, 0.0)))
-    assert bend(contact, bodies, motion) == 0.0
+    assert gap_acceleration(contact, bodies, motion) == 0.0
     motion[1] = one_row(**vector_fields("v", (speed, 0, 0)), **vector_fields("w", (0, 2.0, 0)))
-    turned = interpreted(approach.make_bend(TURNS))(contact, bodies, motion)
+    turned = interpreted(approach.make_gap_acceleration(TURNS))(contact, bodies, motion)
     assert turned == pytest.approx(2.0 * (speed + 2.0 * radius), rel=1e-15)
 
 

@@ -222,25 +222,25 @@ def test_what_a_torque_adds_is_no_approach_of_the_start(axis: str, twisted: int)
     assert abs(row.contact.begin_n) < 1e-13  # sums of a dozen numbers near 1
 
 
-STIRS = interpreted(midpoint_rows.make_stirs(SPEC))
+IS_MOVING = interpreted(midpoint_rows.make_is_moving(SPEC))
 
 
-def stirs(shape: int = SPHERE, **motion: float) -> bool:
+def is_moving(shape: int = SPHERE, **motion: float) -> bool:
     bodies, rows = allocate_bodies(SPEC, 2), np.zeros(2, dtype(MOTION))
     bodies["shape"][1], bodies["bound"] = shape, 0.5
     for name, value in motion.items():
         rows[name][1] = value
-    return bool(STIRS(records(bodies), records(rows)))
+    return bool(IS_MOVING(records(bodies), records(rows)))
 
 
 def test_what_moves_slower_than_solves_leave_is_still() -> None:
     for share, moves in ((1.0 - HAIR, False), (1.0 + HAIR, True)):
         for axis in "xyz":
-            assert stirs(**{f"v{axis}": share * STILL}) == moves
-            assert stirs(**{f"w{axis}": 2.0 * share * STILL}) == moves  # 0.5 m
-        assert stirs(vx=0.6 * share * STILL, vz=-0.8 * share * STILL) == moves
-    assert not stirs(PLANE, wx=1.0)
-    assert stirs(PLANE, vx=1.0)
+            assert is_moving(**{f"v{axis}": share * STILL}) == moves
+            assert is_moving(**{f"w{axis}": 2.0 * share * STILL}) == moves  # 0.5 m
+        assert is_moving(vx=0.6 * share * STILL, vz=-0.8 * share * STILL) == moves
+    assert not is_moving(PLANE, wx=1.0)
+    assert is_moving(PLANE, vx=1.0)
 
 
 TURNING = interpreted(midpoint_rows.make_is_turning(SPEC))

@@ -20,7 +20,13 @@ from plain_facts import body_facts, facts, one_row, pair_facts
 from lavendersim.engine.approach import FAR, OVERLAP
 from lavendersim.engine.collide import narrow_phase
 from lavendersim.engine.effects import impact_order
-from lavendersim.engine.effects.impact_order import CROWD, EFFECT, LOOKS, REBOUND, make_order
+from lavendersim.engine.effects.impact_order import (
+    CANDIDATES_A_ROW,
+    EFFECT,
+    MOST_ROWS,
+    REBOUND,
+    make_order,
+)
 
 NUMERICS = {"impacts": "in_order", "speculative": True, "timestep": "1/10", "slop": 1e-5}
 DT, RADIUS = 0.1, 0.1
@@ -202,20 +208,20 @@ def row_of_balls(count: int) -> Step:
     return Step(bench_of(places, [(0.1, 0.0, 0.0)] + [(0.0, 0.0, 0.0)] * (count - 1)))
 
 
-@pytest.mark.parametrize(("balls", "unordered"), [(CROWD + 1, 0), (CROWD + 2, 1)])
+@pytest.mark.parametrize(("balls", "unordered"), [(MOST_ROWS + 1, 0), (MOST_ROWS + 2, 1)])
 def test_an_impact_of_a_crowd_is_not_made_by_itself(balls: int, unordered: int) -> None:
     step = row_of_balls(balls)
     count, length = step.part(DT)
     assert (count, step.counters.unordered) == (balls - 1, unordered)
     assert length == (DT if unordered else 0.0)
     rows = balls - 1
-    assert step.counters.spent == 1 + rows + rows // LOOKS
+    assert step.counters.spent == 1 + rows + rows // CANDIDATES_A_ROW
 
 
 def test_a_step_spends_its_work_and_goes_on_without_order() -> None:
     """Balls that rebound have more of it."""
     rows = 3
-    own = 1 + rows + rows // LOOKS
+    own = 1 + rows + rows // CANDIDATES_A_ROW
     for before, unordered in ((REBOUND - own, 0), (REBOUND - own + 1, 1)):
         step = row_of_balls(rows + 1)
         step.counters.spent = before

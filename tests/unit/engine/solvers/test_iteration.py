@@ -112,10 +112,10 @@ def test_a_method_that_says_nothing_of_its_changes_goes_on() -> None:
 
 def test_a_method_that_looks_every_four_sweeps_ends_at_one_of_them() -> None:
     # 2^-4 is above the tolerance, 2^-5 is not but nobody looks, 2^-8 is looked at.
-    ended = solve(2.0**-5, lambda spec: Iteration(halving(spec, inf), look_every=4))
+    ended = solve(2.0**-5, lambda spec: Iteration(halving(spec, inf), residual_every=4))
     assert (ended.sweeps, ended.residual) == (8, 2.0**-8)
     # What is solved is not swept; its residual is measured all the same.
-    solved = solve(0.1, lambda spec: Iteration(halving(spec, inf), look_every=4), start=1.0)
+    solved = solve(0.1, lambda spec: Iteration(halving(spec, inf), residual_every=4), start=1.0)
     assert (solved.sweeps, solved.residual) == (0, 0.0)
 
 

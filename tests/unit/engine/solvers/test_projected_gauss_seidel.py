@@ -41,6 +41,6 @@ def test_it_stops_at_the_first_sweep_that_reaches_the_tolerance(rng) -> None:
 
 
 def test_without_a_tolerance_nobody_looks_between_sweeps() -> None:
-    assert make(SPEC).look_every == 1
-    assert make(matrix_spec("projected_gauss_seidel", tolerance=False)).look_every == 0
+    assert make(SPEC).residual_every == 1
+    assert make(matrix_spec("projected_gauss_seidel", tolerance=False)).residual_every == 0
     assert not SOLVER.contact_fields
