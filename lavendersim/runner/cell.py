@@ -199,9 +199,10 @@ def run_and_measure(jobs: Sequence[CellJob], began: Began | None = None) -> list
     keep_freed_memory()
     simulated = _simulate(jobs, began, _note_closed)
     raise_noted()
-    ended = [_measured(job, one) for job, one in zip(jobs, simulated, strict=True)]
-    for job, one in zip(jobs, ended, strict=True):
-        note_measured(job.path, one)
+    ended = []
+    for job, one in zip(jobs, simulated, strict=True):
+        ended.append(_measured(job, one))
+        note_measured(job.path, ended[-1])
     return ended
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from math import inf
 from pathlib import Path
 from time import perf_counter
 from typing import Any, Final, NamedTuple
@@ -24,9 +25,11 @@ from .workers import Death, Retried, work
 # process imports numba and loads kernels for 1 to 2 s of processor time before its first step.
 WORTH_PROCESSES = 4.0
 FORKED: Final = 0.05  # of it: a process that is forked takes 0.02 to 0.05 s to begin and to end
-# Cells are short whose steps and bodies make no more than this: 10 ms or so. They are run together,
-# so many at once: less than a second of work in logs that are not closed.
+# Cells are short whose steps and bodies make no more than this, where the one before them took no
+# longer than BRIEF [s]. They are run together, so many at once: what a signal waits for, and
+# what a kill takes, is less than a second of work.
 SHORT: Final = 8000
+BRIEF: Final = 0.03
 TOGETHER: Final = 16
 BATCHES: Final = 8  # of them at least for each process, so that all end at one time
 
@@ -49,34 +52,31 @@ def outcomes_of(
     apart = _compile_together(missing, workers, progress)
     # The first cell of each plan runs here: it leaves the kernel where other processes find it.
     ordered = sorted(jobs, key=lambda job: first.get(job.plan.choices) is not job)
-    done, taken = 0, 0.0  # and what they took [s]
+    done, taken, latest = 0, 0.0, inf  # and what they took, and each of the last ones [s]
     worth = WORTH_PROCESSES * (FORKED if may_fork() else 1.0)
     while done < len(ordered):
         left = len(ordered) - done
-        if workers > 1 and done >= len(first) and taken / done * left > worth:
+        if workers > 1 and done and done >= len(first) and taken / done * left > worth:
             break
         job = ordered[done]
         compiles = done < len(first) and not is_compiled(job.plan.spec)
         begun = missing.get(job.plan.spec) if compiles else None
         begin = perf_counter()
-        batch = (
-            [job]
-            if done < len(first)
-            else next(_batches(ordered[done : done + TOGETHER], TOGETHER))
-        )
+        most = TOGETHER if done >= len(first) and latest <= BRIEF else 1
+        batch = next(_batches(ordered[done : done + most], most))
         ended = run_and_measure(batch, _beginning(job, begun, tally, progress))
-        done += len(batch)
-        taken += perf_counter() - begin
+        spent = perf_counter() - begin - sum(one.outcome.compile_ns for one in ended) / 1e9
+        done, taken, latest = done + len(batch), taken + spent, spent / len(batch)
         for job, one in zip(batch, ended, strict=True):
             tally.end(job)
-            taken -= one.outcome.compile_ns / 1e9
-            spent = one.outcome.compile_ns + apart.pop(job.path, 0)
-            yield job, one._replace(outcome=one.outcome._replace(compile_ns=spent))
+            compiling = one.outcome.compile_ns + apart.pop(job.path, 0)
+            yield job, one._replace(outcome=one.outcome._replace(compile_ns=compiling))
     rest = [job.alone() for job in ordered[done:]]
     if not rest:
         return
     tally.begin_in_others()
-    batches = [*_batches(rest, len(rest) // (BATCHES * workers))]
+    most = len(rest) // (BATCHES * workers) if latest <= BRIEF else 1
+    batches = [*_batches(rest, most)]
     for job, found in _run_in_others(batches, workers, progress):
         tally.end(job)
         yield job, failed(job, found.how) if isinstance(found, Death) else found
@@ -97,6 +97,8 @@ def _is_short(job: CellJob) -> bool:
     config = job.config
     if config.engine is not None or config.numerics.accuracy is not None:
         return False  # what their steps take is not known
+    if (config.record.residuals, config.record.problems) != ("none", "none"):
+        return False  # their logs are large
     steps = float(config.duration) / float(config.numerics.timestep)
     return steps * len(config.scene.bodies) <= SHORT
 
