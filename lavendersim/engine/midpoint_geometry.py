@@ -174,7 +174,7 @@ def make_look(spec: Spec) -> Any:
 
 def make_stay(spec: Spec) -> Any:
     """Return `kernel(contact, bodies, poses)`: the contact of the start, where the bodies stand."""
-    swept = row_terms(spec).swept
+    swept, coupled = row_terms(spec).swept, row_terms(spec).coupled
     arms = row_terms(spec).bilateral and row_terms(spec).levers
 
     def stay(contact, bodies, poses):
@@ -188,6 +188,9 @@ def make_stay(spec: Spec) -> Any:
         if swept:
             contact.tangential_x, contact.tangential_y = contact.at_tx, contact.at_ty
             contact.tangential_z = contact.at_tz
+        if coupled:
+            contact.patch_x, contact.patch_y = contact.at_patch_x, contact.at_patch_y
+            contact.patch_z = contact.at_patch_z
         if arms:
             if contact.bilateral == 1:
                 contact.arm_ax, contact.arm_ay = contact.at_arm_ax, contact.at_arm_ay
@@ -201,7 +204,7 @@ def make_keep_start(spec: Spec) -> Any:
     """Return `kernel(contacts, count)`: keep geometry and impulses of the solve at the start."""
     swept, friction = row_terms(spec).swept, row_terms(spec).frictional
     terms = row_terms(spec)
-    torsional, rolling = terms.torsional, terms.rolling
+    torsional, rolling, coupled = terms.torsional, terms.rolling, terms.coupled
     arms = terms.bilateral and terms.levers
 
     def keep_start(contacts, count):
@@ -219,6 +222,9 @@ def make_keep_start(spec: Spec) -> Any:
             if swept:
                 contact.at_tx, contact.at_ty = contact.tangential_x, contact.tangential_y
                 contact.at_tz = contact.tangential_z
+            if coupled:
+                contact.at_patch_x, contact.at_patch_y = contact.patch_x, contact.patch_y
+                contact.at_patch_z = contact.patch_z
             if arms:
                 if contact.bilateral == 1:
                     contact.at_arm_ax, contact.at_arm_ay = contact.arm_ax, contact.arm_ay

@@ -118,9 +118,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         if reverses:
             for c in range(count):
                 contact = contacts[c]
-                if contact.is_impact == 1:
-                    va, vb = velocities[contact.a], velocities[contact.b]
-                    reverse_slip(contact, pairs[contact.pair], va, vb)
+                va, vb = velocities[contact.a], velocities[contact.b]
+                reverse_slip(contact, pairs[contact.pair], va, vb)
         if centred:
             for c in range(count):
                 lasting(contacts[c], velocities, motion, params)

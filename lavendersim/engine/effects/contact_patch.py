@@ -113,6 +113,9 @@ EFFECT = Effect(
             ("patch_y", "f8"),
             ("patch_z", "f8"),
             ("in_patch", "i8"),  # 1: closed as the step begins
+            ("at_patch_x", "f8"),  # e as the step begins [m]
+            ("at_patch_y", "f8"),
+            ("at_patch_z", "f8"),
         ],
     ),
     contact_columns=(

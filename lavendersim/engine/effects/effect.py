@@ -122,7 +122,7 @@ class Hooks:
     first_stop: Maker | None = None  # (state, count, params, counters) -> when sliding stops [s]
     note_rate: Maker | None = None  # (body, velocity, motion, dt), once a part is solved
     predict_impacts: Maker | None = None  # (contacts, count, motion, params), before the solve
-    reverse_slip: Maker | None = None  # (contact, pair, va, vb), of an impact, before the solve
+    reverse_slip: Maker | None = None  # (contact, pair, va, vb), before the solve
     slowed_n: Maker | None = None  # (contact, body_a, body_b) -> what of dv_n resists motion [m/s]
     keep_free: Maker | None = None  # (velocities, free), before any contact impulse acts
     match: Maker | None = None  # (contacts, count, bodies, cache, counters, params)

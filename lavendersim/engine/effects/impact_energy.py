@@ -64,12 +64,13 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     from ..parts import make_forget_history
     from ..row_terms import row_terms
     from ..stronge import make_leave
+    from . import has_hook
 
     slip_velocity = make_slip_velocity(spec)
     leave = make_leave(spec)
     some_frictionless = row_terms(spec).frictionless
     forget_history = make_forget_history(spec)
-    bilateral = row_terms(spec).bilateral
+    bilateral, reverses = row_terms(spec).bilateral, has_hook(spec, "reverse_slip")
 
     def work_of(contacts, count, velocities, motion, params):
         # Of all impulses, at each body's time of impact: before and after it forces work alone.
@@ -84,6 +85,8 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
             if contact.lambda_n > 0.0:
                 va, vb = velocities[contact.a], velocities[contact.b]
                 v, v_1, v_2 = slip_velocity(contact, va, vb)
+                if reverses:
+                    v_1, v_2 = v_1 - contact.reversed_1, v_2 - contact.reversed_2
                 ma, mb = motion[contact.a], motion[contact.b]
                 share_a, share_b = 1.0 - ma.tau / dt, 1.0 - mb.tau / dt
                 x = share_b * mb.dvx - share_a * ma.dvx

@@ -72,6 +72,8 @@ def decide(facts: Facts) -> Decision:
     if facts.pair_count == 1 and only.shape_pair == "sphere_plane" and rigid:
         if slides_back(facts):
             return Decision(True, "the ball may slide, or roll, to a stop and back on the plane")
+        if only.surface.tangential_restitution > 0.0 and only.surface.friction > 0.0:
+            return Decision(True, "every bounce gives back slip")
         return Decision(False, "one ball and one plane: no impact follows another within a step")
     if facts.stabilisation_gain > 0.0:
         return Decision(False, "stabilisation_gain pushes by the step: it has no order in time")

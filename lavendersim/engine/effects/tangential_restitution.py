@@ -9,8 +9,9 @@ from the two balances of momentum.
 
 The row asks v_t + e_t s = 0, as it would of a belt of velocity e_t s (`surface_velocity`), so no
 solver knows of it: what the cone cannot give back stays slip. Contacts that last are no impacts,
-and e_t = 0 is friction alone. The slip that is logged has e_t s added, as a belt's. A point off the
-line of centres may win energy by it, as by Newton's law.
+nor is what meets by no more than round-off, and e_t = 0 is friction alone. The slip that is logged
+has e_t s added, as a belt's. A point off the line of centres may win energy by it, as by Newton's
+law; where Stronge's takes that one's place (`impact_energy`), its friction gives back no slip.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..spec import Spec
-from ..terms import RowTerms
+from ..terms import RowTerms, StepTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Effect, Fields, Hooks, Kernel, kernel
 from .keys import SHARE, SurfaceKey, larger
@@ -51,15 +52,21 @@ def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
 
 
 def make_reverse_slip(spec: Spec) -> Kernel:
-    """Return `kernel(contact, pair, va, vb)`, of an impact, before any impulse acts."""
+    """Return `kernel(contact, pair, va, vb)`, of any contact, before impulses act."""
+    from ..approach import CREEP
     from ..block import make_slip_velocity
 
     slip_velocity = make_slip_velocity(spec)
 
     def reverse_slip(contact, pair, va, vb):
+        contact.reversed_1, contact.reversed_2 = 0.0, 0.0
+        if contact.is_impact == 0 or contact.approach_speed <= CREEP:
+            return
         _, one, two = slip_velocity(contact, va, vb)
-        contact.surface_1 += pair.tangential_restitution * one
-        contact.surface_2 += pair.tangential_restitution * two
+        contact.reversed_1 = pair.tangential_restitution * one
+        contact.reversed_2 = pair.tangential_restitution * two
+        contact.surface_1 += contact.reversed_1
+        contact.surface_2 += contact.reversed_2
 
     return kernel(reverse_slip, spec)
 
@@ -71,6 +78,7 @@ EFFECT = Effect(
     needs=("friction",),
     excludes=excludes,
     row=RowTerms(shifted=True),
+    step=StepTerms(bounces_vary=True),  # each reverses the slip that the one before it left
     surface_keys=(
         SurfaceKey(
             name="tangential_restitution",
@@ -85,8 +93,10 @@ EFFECT = Effect(
     fields=Fields(
         pair=[("tangential_restitution", "f8")],  # e_t [-]
         contact=[
-            ("surface_1", "f8"),  # added to the slip along t1: e_t times that before [m/s]
+            ("surface_1", "f8"),  # added to the slip along t1 [m/s]
             ("surface_2", "f8"),
+            ("reversed_1", "f8"),  # what of it is e_t times the slip before [m/s]
+            ("reversed_2", "f8"),
         ],
     ),
     hooks=Hooks(reverse_slip=make_reverse_slip),

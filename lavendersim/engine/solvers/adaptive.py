@@ -40,17 +40,17 @@ from .sweep import make_sweep
 LOOK = 8
 # Sweeps that follow the last call of Newton's method.
 LAST = 2
-# No solve is worth more than so many sweeps.
+# One call of Newton's method is worth no more than so many sweeps.
 MOST_SWEEPS = 3000.0
 # An end that the sweeps left would not reach is worth so many.
 WORTH = 300.0
-# Steps on Coulomb's law itself, to one of the convex rounds before.
+# Steps on Coulomb's law itself, to one of the convex rounds before; each takes twice its time.
 MORE_STEPS = 2.5
 # Multiplications that take the time of one contact's visit in a sweep.
 VISIT = 50.0
 # Newton goes on to this share of the tolerance, or resting loads would creep at it.
 SHARPNESS = 0.01
-# Matrix entries at most (32 MB).
+# Matrix entries at most: 32 MB, and as much for those above the diagonal of `lu`.
 MOST_ENTRIES = 4_000_000
 
 
@@ -171,7 +171,7 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                         system, workspace, unknowns, most, SHARPNESS * tolerance, sticking_guess
                     )
                 if slides:
-                    if ends:
+                    if ends and tolerance > 0.0:  # without one it would never end
                         most *= MORE_STEPS
                         steps += alart_curnier(
                             system, workspace, unknowns, most, SHARPNESS * tolerance, tolerance

@@ -74,14 +74,18 @@ def make_find_root(spec: Spec) -> Any:
     assemble_transposed = make_assemble(spec, stiffness, scale=make_scale_transposed(spec))
     begin, gather = make_begin(spec), make_gather(spec, coulomb_impulse)
     directional_derivative = make_directional_derivative(spec)
-    take_step = make_take_step(spec)
+    take_step, mixed = make_take_step(spec), row_terms(spec).frictionless
 
     def fastest(contacts, count):
         found = 0.0
         for c in range(count):
             contact = contacts[c]
             found = max(found, abs(contact.velocity_n))
-            found = max(found, abs(contact.velocity_1), abs(contact.velocity_2))
+            tangents = True  # a row of a normal has none: what stands there is of another
+            if mixed:
+                tangents = contact.frictional == 1
+            if tangents:
+                found = max(found, abs(contact.velocity_1), abs(contact.velocity_2))
         return found
 
     fastest = kernel(fastest, spec)
@@ -90,7 +94,11 @@ def make_find_root(spec: Spec) -> Any:
         found = 0.0
         for c in range(count):
             contact = contacts[c]
-            change = max(abs(contact.step_n), abs(contact.step_1), abs(contact.step_2))
+            change, tangents = abs(contact.step_n), True
+            if mixed:
+                tangents = contact.frictional == 1
+            if tangents:
+                change = max(change, abs(contact.step_1), abs(contact.step_2))
             if change > found or change != change:
                 found = change
         return found

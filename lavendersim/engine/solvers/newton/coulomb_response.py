@@ -53,6 +53,8 @@ def _make_block_stiffness(spec: Spec) -> Any:
         if n <= 0.0:
             return Stiffness(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         e_n, e_t, limit = contact.stiff_n, contact.stiff_t, contact.mu * n
+        if limit == 0.0:
+            return Stiffness(e_n, 0.0, 0.0, 0.0, 0.0, 0.0)
         one = contact.start_1 - e_t * contact.velocity_1
         two = contact.start_2 - e_t * contact.velocity_2
         r = sqrt(one * one + two * two)

@@ -250,6 +250,8 @@ def test_it_is_on_where_impacts_may_follow_each_other() -> None:
     assert not EFFECT.decide(one).on
     assert EFFECT.decide(one._replace(pair_count=2)).on
     assert EFFECT.decide(floor_and_ball(compliance=1e-4)).on
+    assert EFFECT.decide(floor_and_ball(friction=0.1, tangential_restitution=0.1)).on
+    assert not EFFECT.decide(floor_and_ball(friction=0.0, tangential_restitution=0.1)).on
     two = one._replace(pair_count=2)
     for other in ({"impacts": "captured"}, {"pairs": ()}, {"stabilisation_gain": 0.1}):
         decision = EFFECT.decide(two._replace(**other))

@@ -98,6 +98,35 @@ def test_a_contact_that_lasts_gives_nothing_back() -> None:
     np.testing.assert_allclose(rolling(1.0), rolling(0.0), rtol=1e-14)
 
 
+@pytest.mark.parametrize("approach", [1e-16, -1e-16])
+def test_what_meets_by_round_off_alone_gives_nothing_back(approach: float) -> None:
+    """It slides down a wall, and meets a smooth slope, which presses it to the wall."""
+    rough = {"friction": 1.0, "tangential_restitution": 0.2}
+    bodies = {
+        "slope": plane((-0.6, 0.0, 0.8), -0.064, friction=0.0),
+        "wall": plane((1.0, 0.0, 0.0), 0.0, **rough),
+        "ball": sphere(RADIUS, (RADIUS, 0.0, 0.1), velocity=(approach, 0.0, -V_N), **rough),
+    }
+    cell = resolved(bodies, **{**DEFAULT.model_dump(mode="json"), **SHARP})
+    bench = interpreted_bench(cell, planned(cell).spec)
+    bench.run(1)
+    assert motion(bench) == pytest.approx((0.0, 0.0), abs=1e-8)
+
+
+def test_each_of_two_bounces_in_a_step_reverses_the_slip() -> None:
+    """At e = 0.8 from 0.06 m/s the second comes 2 e v/g = 9.8 ms after the first, of 16.7."""
+    surface = {"friction": 10.0, "restitution": 0.8, "tangential_restitution": 1.0}
+    ball = sphere(RADIUS, (0.0, 0.0, RADIUS), velocity=(1.0, 0.0, -0.06), **surface)
+    numerics = {**DEFAULT.model_dump(mode="json"), **SHARP, "timestep": "1/60"}
+    cell = resolved({"floor": plane(**surface), "ball": ball}, (0.0, 0.0, -9.81), **numerics)
+    bench = interpreted_bench(cell, planned(cell).spec)
+    bench.run(1)
+    v = float(bench.velocity[1, 0]), float(bench.engine.velocities["wy"][1])
+    expected = bounced(*bounced(1.0, 0.0, -1.0, 1.0, 1e9), -1.0, 1.0, 1e9)
+    assert expected == pytest.approx((1.0, 0.0), abs=1e-14)  # Garwin's
+    assert v == pytest.approx(expected, abs=10 * LEFT / RADIUS)
+
+
 def test_where_no_slip_is_given_back_the_effect_is_absent() -> None:
     assert "tangential_restitution" not in between_walls(0.0).spec.effects
 
