@@ -94,7 +94,7 @@ def test_workers_that_are_killed_lose_no_cell(tmp_path: Path) -> None:
     whole = contents(run(config, tmp_path / "whole").run)  # leaves the kernel for the workers
     draw = random.Random(7)
     for _ in range(KILLS):
-        workers = [begin(config, into) for _ in range(WORKERS // 2)]
+        workers = [begin(config, into) for _ in range(WORKERS if KILLS > 1 else WORKERS // 2)]
         while not list(into.glob("shards/*/cells/*")):
             time.sleep(0.001)
         for worker in workers:
