@@ -27,6 +27,8 @@ DECLARATIONS = {
     "lavendersim.engine.records",
     "lavendersim.engine.solvers",
     "lavendersim.engine.spec",
+    "lavendersim.engine.step_terms",
+    "lavendersim.engine.terms",
 }
 
 

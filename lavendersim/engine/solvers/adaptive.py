@@ -166,7 +166,7 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                     put_back(system, workspace.packed, packing)
                     packing = Packing(FIRST, 0)  # few sweeps follow
                 steps = 0
-                if not over:
+                if not (over and ends):
                     steps, sticking_guess = newton(
                         system, workspace, unknowns, most, SHARPNESS * tolerance, sticking_guess
                     )

@@ -24,7 +24,8 @@ def without_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def cells() -> list[Any]:
-    shared = {"trace": lambda: SimpleNamespace(), "status": "complete", "path": Path("a.mcap")}
+    run = SimpleNamespace(step={"time": np.array([0.0, 1.0])})
+    shared = {"trace": lambda: run, "status": "complete", "path": Path("a.mcap")}
     return [
         SimpleNamespace(index=k, label=f"m={m}", coordinates={"m": m}, **shared)
         for k, m in enumerate((1, 2))

@@ -178,4 +178,4 @@ def test_a_setting_that_flies_apart_is_timed_up_to_there_and_stays(tmp_path: Pat
         assert row.timed_seconds <= 3 * 0.1341
         assert row.timed_seconds >= 3 * (0.1341 - 2.0 * step)
     assert "all of them failed" in costed.table.targets[0].sentence
-    assert "no error" in [text.get_text() for text in compose(costed.table).axes[0].texts]
+    assert "failed" in [text.get_text() for text in compose(costed.table).axes[0].texts]

@@ -63,7 +63,7 @@ def test_a_state_that_is_not_finite_ends_the_cell_as_it_does_by_lavender(
         yield Built("0", 1)
         pose = np.tile([0.0, 0, 3, 1, 0, 0, 0], (4, 1, 1))
         pose[2:, 0, 1] = np.nan
-        contacts = np.zeros((4, 3 + len(PEERS["mujoco"].tells)))
+        contacts = np.zeros((4, 3 + len(PEERS["mujoco"].reported)))
         contacts[:, 0], contacts[:, 2] = range(4), 1
         counts = np.arange(4)
         yield States(0, pose, np.zeros((4, 1, 6)), contacts, 400, counts)
