@@ -29,6 +29,13 @@ def _clock(timestep: Fraction, changes: tuple[tuple[Fraction, Fraction], ...]) -
     return Clock(timestep, changes)
 
 
+@lru_cache(maxsize=256)
+def _steps(
+    timestep: Fraction, changes: tuple[tuple[Fraction, Fraction], ...], duration: float
+) -> int:
+    return _clock(timestep, changes).steps_of(exact(duration))
+
+
 class CellEffects(ResolvedModel):
     """What the plan is overridden by."""
 
@@ -100,11 +107,14 @@ class CellConfig(ResolvedModel):
     @property
     def clock(self) -> Clock:
         """The times of its steps."""
-        changes = [one for one in self.events if isinstance(one, CellTimestep)]
-        timed = tuple((exact(one.at), one.timestep) for one in changes)
-        return _clock(self.numerics.timestep, timed)
+        return _clock(self.numerics.timestep, self._timed)
 
     @property
     def steps(self) -> int:
         """How many steps the duration has, see `Clock.steps_of`."""
-        return self.clock.steps_of(exact(self.duration))
+        return _steps(self.numerics.timestep, self._timed, self.duration)
+
+    @property
+    def _timed(self) -> tuple[tuple[Fraction, Fraction], ...]:
+        changes = [one for one in self.events if isinstance(one, CellTimestep)]
+        return tuple((exact(one.at), one.timestep) for one in changes)
