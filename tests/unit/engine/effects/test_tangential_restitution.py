@@ -100,12 +100,12 @@ def test_a_contact_that_lasts_gives_nothing_back() -> None:
 
 @pytest.mark.parametrize("approach", [1e-16, -1e-16])
 def test_what_meets_by_round_off_alone_gives_nothing_back(approach: float) -> None:
-    """It slides down a wall, and meets a smooth slope, which presses it to the wall."""
-    rough = {"friction": 1.0, "tangential_restitution": 0.2}
+    """It slides down a wall, and meets a frictionless slope, which presses it to the wall."""
+    frictional = {"friction": 1.0, "tangential_restitution": 0.2}
     bodies = {
         "slope": plane((-0.6, 0.0, 0.8), -0.064, friction=0.0),
-        "wall": plane((1.0, 0.0, 0.0), 0.0, **rough),
-        "ball": sphere(RADIUS, (RADIUS, 0.0, 0.1), velocity=(approach, 0.0, -V_N), **rough),
+        "wall": plane((1.0, 0.0, 0.0), 0.0, **frictional),
+        "ball": sphere(RADIUS, (RADIUS, 0.0, 0.1), velocity=(approach, 0.0, -V_N), **frictional),
     }
     cell = resolved(bodies, **{**DEFAULT.model_dump(mode="json"), **SHARP})
     bench = interpreted_bench(cell, planned(cell).spec)
