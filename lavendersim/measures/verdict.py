@@ -65,12 +65,19 @@ class Verdict(NamedTuple):
     @property
     def row(self) -> dict[str, Any]:
         """What tables say of it."""
-        given = self._asdict()
-        del given["measure"], given["reason"]
-        if self.judged:
-            del given["judged"]
-        given["own_message"] = self.message
-        return {name.removeprefix("own_"): value for name, value in given.items()}
+        found = {
+            "name": self.name,
+            "node": self.node,
+            "passed": self.passed,
+            "measured": self.measured,
+            "expected": self.expected,
+            "tolerance": self.tolerance,
+            "message": self.message,
+            "path": self.path,
+            "follows": self.follows,
+            "margin": self.margin,
+        }
+        return found if self.judged else {**found, "judged": False}
 
 
 def unjudged(reason: str) -> Outcome:
