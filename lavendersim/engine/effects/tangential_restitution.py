@@ -20,10 +20,15 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..spec import Spec
-from ..terms import RowTerms, StepTerms
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Effect, Fields, Hooks, Kernel, kernel
 from .keys import SHARE, SurfaceKey, larger
+
+WITHOUT_ORDER = {
+    "captured": "which lasting contact has too",
+    "at_surface": "where bounces within a step are one",
+}
 
 
 def _described(pair: PairFacts) -> str:
@@ -39,16 +44,23 @@ def decide(facts: Facts) -> Decision:
 
 
 def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Yield captured impacts, which do not tell an impact from a contact that lasts."""
-    if config.numerics.impacts != "captured":
+    """Yield impacts without order: captured ones do not tell an impact from a contact that lasts.
+
+    At the surface, or with a stabilisation gain, bounces of a step count as one, and each of them
+    reverses the slip that the one before it left.
+    """
+    numerics = config.numerics
+    if numerics.impacts != "in_order":
+        why = f"impacts are {numerics.impacts}, {WITHOUT_ORDER[numerics.impacts]}"
+    elif numerics.stabilisation_gain > 0.0:
+        why = "stabilisation_gain is above 0, so impacts have no order"
+    else:
         return
     for name, body in config.scene.bodies.items():
         own = (body.surface, *getattr(body.surface, "partners", ()))
         if any((one.tangential_restitution or 0.0) > 0.0 for one in own):
-            sentence = (
-                "impacts are captured, which lasting contact has too; expected 0, or in_order"
-            )
-            yield ("scene", "bodies", name, "surface", "tangential_restitution"), sentence
+            place = ("scene", "bodies", name, "surface", "tangential_restitution")
+            yield place, f"{why}; expected 0, or impacts in_order"
 
 
 def make_reverse_slip(spec: Spec) -> Kernel:
@@ -78,7 +90,6 @@ EFFECT = Effect(
     needs=("friction",),
     excludes=excludes,
     row=RowTerms(shifted=True),
-    step=StepTerms(bounces_vary=True),  # each reverses the slip that the one before it left
     surface_keys=(
         SurfaceKey(
             name="tangential_restitution",

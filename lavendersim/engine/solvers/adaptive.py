@@ -171,7 +171,7 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                         system, workspace, unknowns, most, SHARPNESS * tolerance, sticking_guess
                     )
                 if slides:
-                    if ends and tolerance > 0.0:  # without one it would never end
+                    if ends:
                         most *= MORE_STEPS
                         steps += alart_curnier(
                             system, workspace, unknowns, most, SHARPNESS * tolerance, tolerance

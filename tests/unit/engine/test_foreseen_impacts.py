@@ -16,8 +16,8 @@ from plain_facts import one_row
 
 from lavendersim.engine.approach import CREEP, ELSEWHERE, GUESSED, NEVER, OVERLAP
 from lavendersim.engine.foreseen_impacts import (
-    BENDS,
     CLOSED,
+    CURVED,
     FALL,
     FLIGHT,
     GLANCING,
@@ -226,9 +226,9 @@ def test_a_glance_is_an_impact_at_a_slower_speed() -> None:
         row.moves(gap * SLOP, -0.02, 0.0)  # slower than forces change, faster than GLANCING of it
         row.motion["dvz"] = [0.5 * change, -0.5 * change]
         row.motion["ahead_z"] = 0.0
-        row.motion["vx"][1] = 1.0  # v^2/r dt = 0.1 m/s, more than BENDS of what forces change
+        row.motion["vx"][1] = 1.0  # v^2/r dt = 0.1 m/s, more than CURVED of what forces change
         assert (row.foresee()[2] == pytest.approx(gap * SLOP / 0.02)) == due
-        assert BENDS * change < 1.0 / RADIUS * STEP
+        assert CURVED * change < 1.0 / RADIUS * STEP
         assert GLANCING * change < 0.02
 
 

@@ -131,15 +131,23 @@ def test_where_no_slip_is_given_back_the_effect_is_absent() -> None:
     assert "tangential_restitution" not in between_walls(0.0).spec.effects
 
 
-def test_captured_impacts_are_refused_where_the_key_stands() -> None:
-    text = """
+@pytest.mark.parametrize(
+    ("numerics", "why"),
+    [
+        ("impacts: captured", "impacts are captured, which"),
+        ("impacts: at_surface", "impacts are at_surface, where"),
+        ("stabilisation_gain: 0.2", "stabilisation_gain is above 0, so"),
+    ],
+)
+def test_impacts_without_order_are_refused_where_the_key_stands(numerics: str, why: str) -> None:
+    text = f"""
 scene:
-  surfaces: {super: {friction: 0.3, tangential_restitution: 1}}
+  surfaces: {{super: {{friction: 0.3, tangential_restitution: 1}}}}
   bodies:
-    floor: {shape: {kind: plane}, surface: super}
-    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [0, 0, 1], surface: super}
-numerics: {timestep: 1/240, impacts: captured}
+    floor: {{shape: {{kind: plane}}, surface: super}}
+    ball: {{shape: {{kind: sphere, radius: 0.1}}, mass: 1, position: [0, 0, 1], surface: super}}
+numerics: {{timestep: 1/240, {numerics}}}
 duration: 1
 """
-    with pytest.raises(ConfigError, match=r"3:.*tangential_restitution: impacts are captured"):
+    with pytest.raises(ConfigError, match=rf"3:.*tangential_restitution: {why}"):
         load_experiment_text(text, "super.yaml").cells()
