@@ -78,7 +78,8 @@ def test_no_more_waits_than_may(monkeypatch: pytest.MonkeyPatch) -> None:
     queue = queue_of(file)
     for number in range(10):
         queue.put(closing(number, 1e-3), 1)
-        assert len(file.written) >= number + 1 - 3 - chunk_queue.COMPRESSORS
+        # Not what is written: whoever has the file may be held up by other processes.
+        assert len([slot for slot in queue._asked if not slot.done.done()]) <= 3
     queue.drain()
     assert file.written == list(range(10))
 
