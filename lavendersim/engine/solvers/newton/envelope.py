@@ -207,16 +207,23 @@ def factorise(bodies, workspace):
 
 
 @inner
-def solve_factorised(bodies, workspace, x):
-    """Solve in place: x enters as the right side, leaves as the solution."""
-    values, start, diagonal = workspace.values, workspace.start, workspace.diagonal
-    rows = DOF * bodies
-    for row in range(rows):
+def solve_lower(bodies, workspace, x):
+    """Solve with L alone, in place."""
+    values, start = workspace.values, workspace.start
+    for row in range(DOF * bodies):
         begin = DOF * workspace.first[row // DOF]
         total = x[row]
         for column in range(begin, row):
             total -= values[start[row] + column - begin] * x[column]
         x[row] = total
+
+
+@inner
+def solve_factorised(bodies, workspace, x):
+    """Solve in place: x enters as the right side, leaves as the solution."""
+    values, start, diagonal = workspace.values, workspace.start, workspace.diagonal
+    rows = DOF * bodies
+    solve_lower(bodies, workspace, x)
     for row in range(rows):
         x[row] /= diagonal[row]
     for row in range(rows - 1, -1, -1):

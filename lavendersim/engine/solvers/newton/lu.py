@@ -8,7 +8,7 @@ Without pivots: masses on the diagonal keep them from zero but where friction ja
 from __future__ import annotations
 
 from ...compile import inner
-from .envelope import DOF, dot_rows
+from .envelope import DOF, dot_rows, solve_lower
 
 
 @inner
@@ -40,16 +40,9 @@ def factorise_lu(bodies, workspace):
 @inner
 def solve_lu(bodies, workspace, x):
     """Solve in place: x enters as the right side, leaves as the solution."""
-    values, upper, start = workspace.values, workspace.upper, workspace.start
-    diagonal = workspace.diagonal
-    rows = DOF * bodies
-    for row in range(rows):
-        begin = DOF * workspace.first[row // DOF]
-        total = x[row]
-        for column in range(begin, row):
-            total -= values[start[row] + column - begin] * x[column]
-        x[row] = total
-    for row in range(rows - 1, -1, -1):
+    upper, start, diagonal = workspace.upper, workspace.start, workspace.diagonal
+    solve_lower(bodies, workspace, x)
+    for row in range(DOF * bodies - 1, -1, -1):
         begin = DOF * workspace.first[row // DOF]
         x[row] /= diagonal[row]
         known = x[row]
