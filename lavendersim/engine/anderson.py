@@ -8,8 +8,7 @@ changes dX of what went in and dF of the defects give the least squares
 
 which ends a linear g of as many eigenvalues as there are columns. Columns are made orthogonal from
 the newest to the oldest; one that adds no direction is left out: what round-off and curvature leave
-of it would be multiplied by as much as it is shorter than its column (filtering by the angle,
-Pollock and Rebholz 2023).
+of it would be multiplied by as much as it is shorter than its column.
 """
 
 from __future__ import annotations

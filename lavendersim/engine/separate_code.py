@@ -31,8 +31,8 @@ from .kernel_parts import STORE, KernelPart, merged_into, separate_in
 
 ENTRY = ".separate"  # behind a part's symbol: that of its object
 NAME = re.compile(r'%(?:[-\w.$]+|"[^"]*")')  # of a value in LLVM's text
-# LLVM's first level takes two thirds of the time of its third, and kernels are as fast: a stack of
-# six, and piles of 216 balls and boxes by both kinds of sweeps, agree within 3 %.
+# LLVM's first level takes two thirds of the time of its third, and kernels are as fast, as far as
+# a busy machine shows: a stack of six and 216 balls within 3 %, 216 boxes within 1 to 9 %.
 LEVEL = 1
 _loaded: set[str] = set()  # symbols of separate parts that this process can call
 
