@@ -323,3 +323,28 @@ def test_boxes_and_hulls_have_flat_faces_alone() -> None:
     kinds = ("plane", "sphere", "box", "capsule", "cylinder", "hull")
     found = [flat(SimpleNamespace(shape=kind)) for kind in range(len(kinds))]
     assert found == [kind in ("box", "hull") for kind in kinds]
+
+
+def test_a_contact_that_stays_has_all_of_the_start_where_its_body_stands(rng) -> None:
+    """Place, normal, way aside, lever of the patch and arms of a joint; B carries it, or A."""
+    spec = TORQUES.including("compound", "contact_patch", "contact_torque", "joint")
+    for mover, other in ((1, 0), (0, 1)):
+        contacts, bodies = np.zeros(1, contact_dtype(spec)), allocate_bodies(spec, 2)
+        contacts["b"], contacts["bilateral"], bodies["inv_m"][mover] = 1, 1, 1.0
+        places = ("", "n", "tangential_", "patch_", "arm_a", "arm_b")
+        drawn = {prefix: rng.normal(size=3) for prefix in places}
+        for prefix, vector_of in drawn.items():
+            put_vector(contacts[0], prefix, vector_of)
+        interpreted(midpoint_geometry.make_keep_start(spec))(records(contacts), 1)
+        for prefix in places:
+            put_vector(contacts[0], prefix, rng.normal(size=3))
+        for body in bodies:
+            put_vector(body, "", rng.normal(size=3))
+        poses, shift = bodies.copy(), rng.normal(size=3)
+        put_vector(bodies[mover], "", vector(bodies[mover]) + shift)
+        put_vector(bodies[other], "", rng.normal(size=3))
+        stay = interpreted(midpoint_geometry.make_stay(spec))
+        stay(records(contacts)[0], records(bodies), records(poses))
+        for prefix, expected in drawn.items():
+            moved = shift if prefix == "" else 0.0
+            np.testing.assert_allclose(vector(contacts[0], prefix), expected + moved, atol=1e-14)

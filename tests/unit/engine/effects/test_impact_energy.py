@@ -47,8 +47,8 @@ def make_scale(gain: float):
 class Meeting:
     """One contact of two free bodies that meet at 1 m/s, and slip."""
 
-    def __init__(self, rng: np.random.Generator, e: float) -> None:
-        self.scene = drawn(SPEC, rng, [(1, 2)], fixed=(0,))
+    def __init__(self, rng: np.random.Generator, e: float, spec: Spec = SPEC) -> None:
+        self.spec, self.scene = spec, drawn(spec, rng, [(1, 2)], fixed=(0,))
         set_contact_velocity(self.scene, [-1.0, 0.4, 0.0])
         self.before = stacked(self.scene.velocities)
         row = self.scene.contacts
@@ -57,7 +57,7 @@ class Meeting:
         row["lambda_2"] = 0.0
         _, velocities, contacts = views(self.scene)
         self.contact, self.velocities = contacts[0], velocities
-        interpreted(make_note(SPEC))(self.contact, velocities[1], velocities[2])
+        interpreted(make_note(spec))(self.contact, velocities[1], velocities[2])
         self.solves = 0
 
     def act(self, contact: Any, velocities: Any) -> None:
@@ -86,7 +86,7 @@ class Meeting:
         solve.py_func(system, workspace, params, counters, None)
         self.first = self.gained
         motion = records(np.zeros(3, dtype(MOTION)))
-        kernel = interpreted(make_settle(SPEC, solve, inner(at_once)))
+        kernel = interpreted(make_settle(self.spec, solve, inner(at_once)))
         kernel(system, motion, workspace, params, counters, None)
         self.solves = workspace[0] - 1
         return counters
@@ -144,3 +144,29 @@ def test_it_is_on_where_something_bounces_and_something_has_friction() -> None:
                       ((bounces, turns), True)):  # fmt: skip
         assert EFFECT.decide(facts(pairs=pairs, impacts="at_surface")).on is on
     assert not EFFECT.decide(facts(pairs=(bounces, frictional))).on
+
+
+@pytest.mark.parametrize("gives", [0.0, 0.6])
+def test_the_guard_acts_where_bodies_gain_energy_and_only_there(gives, rng) -> None:
+    """dE = lambda . w + 1/2 lambda . W lambda, whether or not rows ask for slip to be given back.
+
+    Friction f gains where it reverses more slip than there was, and where it drives: beyond the
+    two roots of that, which are looked at to a millionth.
+    """
+    spec = SPEC.including("tangential_restitution") if gives else SPEC
+    e, slip = 0.9, 0.4
+    first = Meeting(rng, e, spec)
+    w = first.scene.jacobian @ first.scene.inverse @ first.scene.jacobian.T
+    n = (1.0 + e) / w[0, 0]
+    normal = -n + 0.5 * n * n * w[0, 0]
+    roots = np.sort(np.roots([0.5 * w[1, 1], slip + n * w[0, 1], normal]))
+    assert roots[0] < 0.0 < roots[1]
+    for root in roots:
+        for share in (1.0 - 1e-6, 1.0 + 1e-6):
+            meeting = Meeting(np.random.default_rng(20250701), e, spec)
+            if gives:
+                row = meeting.scene.contacts
+                row["reversed_1"] = row["surface_1"] = gives * slip
+            counters = meeting.settle(share * root)
+            assert (meeting.first > 0.0) == (share > 1.0)
+            assert counters.stronge == int(share > 1.0)
