@@ -10,6 +10,7 @@ reaches: some minutes, kept beside `--keep`. On a mutant run those that reach it
 whose kernels are interpreted, too, from the quickest on, until one fails: the mutant is seen, at a
 second or two. They are a part of the suite: what they do not see, the whole suite may.
 `--compiled` tries what they did not see on compiled kernels and more tests, at some 20 s each.
+What changes no result, or only what it costs, is listed with its reason (`explained_mutants`).
 Mutants are drawn from a seed, in turns from every group of files. `--keep` holds a line for each;
 started again, the program goes on behind them.
 """
@@ -26,7 +27,6 @@ import signal
 import sys
 import tempfile
 import time
-from collections import Counter
 from collections.abc import Iterator
 from fnmatch import fnmatch
 from pathlib import Path
@@ -37,6 +37,7 @@ from hypothesis import HealthCheck, Phase, settings
 from tests.property import compiled_mutants, interpreter_mode
 from tests.property.compiled_mutants import BROKEN, ENDLESS, SEEN, UNSEEN
 from tests.property.engine_mutants import ENGINE, GROUPS, ROOT, Mutant, applied, drawn
+from tests.property.explained_mutants import explained
 from tests.property.forked_tests import (
     Collected,
     Done,
@@ -65,7 +66,7 @@ PROFILE: dict[str, Any] = {  # of tests that draw; nothing is drawn otherwise in
     "phases": [Phase.explicit, Phase.generate],
     "suppress_health_check": list(HealthCheck),
 }
-UNREACHED = "no test reaches it"
+UNREACHED, COMPILED = "no test reaches it", "compiled"
 FIELDS = ("file", "line", "column", "kind", "old", "new", "result", "by", "why", "seconds")
 
 Reach = dict[str, dict[int, list[tuple[float, str]]]]  # tests by file and line, with their seconds
@@ -222,7 +223,7 @@ def compiled(asked: Any, chosen: list[Mutant]) -> Iterator[tuple[Mutant, Row]]:
                 return
             started = time.monotonic()
             result, by = compiled_mutants.tried(mutant, place, kernels, names)
-            row = Row(result, by, "compiled", time.monotonic() - started)
+            row = Row(result, by, COMPILED, time.monotonic() - started)
             _append(asked.keep, mutant, row)
             yield mutant, row
 
@@ -237,6 +238,33 @@ def kept(path: Path | None) -> dict[Mutant, Row]:
         Mutant(file, int(line), int(column), *change): Row(result, by, why, float(seconds))
         for file, line, column, *change, result, by, why, seconds in rows
     }
+
+
+def outcome(mutant: Mutant, row: Row) -> str:
+    """Return the column of a mutant in the table of all."""
+    if row.result in (SEEN, ENDLESS):
+        return "compiled only" if row.why == COMPILED else "seen"
+    if row.result == BROKEN:
+        return BROKEN
+    return "explained" if explained(mutant) else "open"
+
+
+def report(chosen: list[Mutant], results: dict[Mutant, Row]) -> None:
+    """Print what is not seen, with its reason where it has one, and a table of the groups."""
+    found = {mutant: outcome(mutant, results[mutant]) for mutant in chosen if mutant in results}
+    for mutant, result in found.items():
+        if result not in ("seen", "compiled only"):
+            print(f"{result}: {mutant.file}:{mutant.line}:{mutant.column + 1}: "
+                  f"{mutant.kind}: {mutant.old} -> {mutant.new}: "
+                  f"{explained(mutant) or results[mutant].result}")  # fmt: skip
+    columns = ("tried", "seen", "compiled only", "explained", "open")
+    print(f"{'':9}" + "".join(f"{name:>15}" for name in columns))
+    for group, patterns in (*GROUPS.items(), ("all", ("*",))):
+        own = [r for m, r in found.items() if any(fnmatch(m.file, p) for p in patterns)]
+        counts = [len(own), *(own.count(name) for name in columns[1:])]
+        print(f"{group:9}" + "".join(f"{count:15}" for count in counts))
+    seen = sum(result in ("seen", "compiled only") for result in found.values())
+    print(f"{seen} of {len(found)} mutants are seen")
 
 
 def main() -> int:
@@ -261,37 +289,13 @@ def main() -> int:
     unseen = (UNSEEN, UNREACHED)
     if asked.compiled:
         due = [m for m in chosen if results.get(m, Row(UNSEEN)).result in unseen
-               and results.get(m, Row("")).why != "compiled"]  # fmt: skip
+               and results.get(m, Row("")).why != COMPILED and not explained(m)]  # fmt: skip
     else:
         retried = (BROKEN, *(unseen if asked.again else ()))
         due = [m for m in chosen if results.get(m, Row(BROKEN)).result in retried]
     if due:
         results |= dict((compiled if asked.compiled else interpreted)(asked, due))
-    counts: Counter[tuple[str, str]] = Counter()
-    for mutant in chosen:
-        if mutant in results:
-            row = results[mutant]
-            counts[mutant.kind, row.result] += 1
-            if row.result not in (SEEN, ENDLESS):
-                print(f"{row.result}: {mutant.file}:{mutant.line}:{mutant.column + 1}: "
-                      f"{mutant.kind}: {mutant.old} -> {mutant.new}")  # fmt: skip
-    for kind in sorted({kind for kind, _ in counts}):
-        print(f"{kind}: { {result: n for (k, result), n in sorted(counts.items()) if k == kind} }")
-    seen = sum(n for (_, result), n in counts.items() if result in (SEEN, ENDLESS))
-    print(f"{seen} of {sum(counts.values())} mutants are seen")
-    return int(any(result == BROKEN for _, result in counts))
+    report(chosen, results)
+    return int(any(row.result == BROKEN for row in results.values()))
 
 
-def _append(path: Path | None, mutant: Mutant, row: Row) -> None:
-    if path is None:
-        return
-    new = not path.exists()
-    with path.open("a", newline="") as file:
-        writer = csv.writer(file)
-        if new:
-            writer.writerow(FIELDS)
-        writer.writerow((*mutant, *row[:-1], f"{row.seconds:.1f}"))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

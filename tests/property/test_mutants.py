@@ -17,7 +17,8 @@ from typing import Any
 
 import pytest
 
-from tests.property.engine_mutants import applied, groups, mutants_of
+from tests.property.engine_mutants import Mutant, applied, groups, mutants_of
+from tests.property.explained_mutants import EXPLAINED, change_of, explained
 from tests.property.forked_tests import forks
 from tests.property.interpreter_mode import broken
 
@@ -54,6 +55,19 @@ def test_each_kind_of_mutant_changes_one_piece_of_a_kernel() -> None:
 
 def test_every_group_of_files_has_mutants_enough_to_draw_from() -> None:
     assert all(len(mutants) > 300 for mutants in groups().values())
+
+
+def test_each_mutant_that_is_explained_is_one_that_can_be_drawn() -> None:
+    """Its line still stands in the engine, once, and says something else when it is broken."""
+    sources: dict[str, list[Mutant]] = {}
+    for mutant in (one for mutants in groups().values() for one in mutants):
+        sources.setdefault(mutant.file, []).append(mutant)
+    for file, entries in EXPLAINED.items():
+        text = (ROOT / ENGINE / file).read_text()
+        changes = [change_of(mutant, text) for mutant in sources[file]]
+        for whole, broken, why in entries:
+            assert changes.count((whole, broken)) == 1, (file, whole, broken)
+            assert len(why) > 10
 
 
 def test_what_a_broken_module_made_before_and_makes_afterwards_is_broken(tmp_path: Path) -> None:
