@@ -94,6 +94,15 @@ def test_what_a_spring_presses_on_takes_no_part() -> None:
     assert marked(contacts, bodies, SPRINGS, pairs)[0] == {0}
 
 
+def test_what_joints_hold_takes_part_wherever_its_ends_are() -> None:
+    spec = SPEC.including("joint")
+    for bilateral, taking in ((0, {0}), (1, {0, 1})):
+        contacts, bodies = rows_of([(0, 1), (1, 2)], spec)
+        contacts["located"], contacts["phi"] = [MEETS, FAR], [0.0, 100.0 * SLOP]
+        contacts["bilateral"] = [0, bilateral]
+        assert marked(contacts, bodies, spec)[0] == taking
+
+
 @pytest.mark.parametrize("waits", [[0, 0, 0, 0], [1, 0, 1, 0], [0, 1, 1, 1], [1, 1, 1, 1]])
 def test_rows_that_do_not_wait_are_kept_in_their_order(waits: list[int]) -> None:
     contacts, _ = rows_of([(0, 1)] * 4)

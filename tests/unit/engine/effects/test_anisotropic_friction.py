@@ -14,6 +14,7 @@ import pytest
 from interpreted import interpreted
 from interpreted_steps import interpreted_bench
 from laboratory import EVERYTHING, Bench, box, plane, planned, resolved, sphere
+from plain_facts import one_row, vector_fields
 
 from lavendersim.engine.effects import anisotropic_friction, keys
 from lavendersim.errors import ConfigError
@@ -279,3 +280,12 @@ def test_what_it_cannot_be_with_is_refused_where_it_stands(
     text = REFUSED.format(surface=surface, grain=grain, numerics=numerics)
     with pytest.raises(ConfigError, match=f"{at}.*{words}"):
         load_experiment_text(text, "grain.yaml").cells()
+
+
+def test_what_has_no_grain_slips_along_its_tangents_as_it_is() -> None:
+    stretch = interpreted(anisotropic_friction.make_stretch(EVERYTHING))
+    for across, grain in ((2.0, 0.0), (0.0, 1.0)):
+        contact = one_row(ease_1=7.0, ease_2=8.0, stretched=1)
+        bodies = [one_row(**vector_fields("grain_", (0.0, part, 0.0))) for part in (0.0, grain)]
+        stretch(contact, *bodies, one_row(across_grain=across))
+        assert (contact.ease_1, contact.ease_2, contact.stretched) == (1.0, 1.0, 0)

@@ -10,12 +10,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn_contacts import random_frame
 from interpreted import interpreted, records
 from interpreted_steps import interpreted_bench
 from laboratory import Bench, body, box, plane, planned, resolved, sphere
+from plain_facts import one_row, vector_fields
 
 from lavendersim.engine.block import make_slip_velocity
+from lavendersim.engine.effects.contact_patch import make_mark_middle
+from lavendersim.engine.records import TOUCHING
 from lavendersim.engine.solvers.newton.response import make_fill_rows
+from lavendersim.engine.spec import Spec
 
 G, DT, MU, RADIUS, HIGH = 9.81, 1.0 / 240.0, 0.3, 0.1, 0.04
 EVEN = 2.0 / 3.0
@@ -191,6 +196,25 @@ def test_a_single_point_has_its_friction_where_it_is() -> None:
         return bench.velocity[1].tobytes()
 
     assert bits(0.5) == bits(1.0)
+
+
+def test_levers_are_those_of_the_middle_of_what_is_closed_along_any_normal(rng) -> None:
+    """e = (1 - q) n x d, d from the point to the mean of those that touch; of others nothing."""
+    kernel, normal, q = interpreted(make_mark_middle(Spec())), random_frame(rng)[0], 0.4
+    places = rng.normal(size=(5, 3))
+    fields = {"patch_x": 9.0, "patch_y": 9.0, "patch_z": 9.0, "in_patch": 7}
+    contacts = [
+        one_row(phi=TOUCHING * (2.0 if c == 3 else 0.5), **vector_fields("", place),
+                **vector_fields("n", normal), **fields)
+        for c, place in enumerate(places)
+    ]  # fmt: skip
+    closed = [1, 2, 4]
+    kernel(contacts, 1, 5, one_row(friction=0.5, friction_reach=q), True)
+    for c in range(1, 5):
+        found = [contacts[c][f"patch_{axis}"] for axis in "xyz"]
+        expected = (1.0 - q) * np.cross(normal, places[closed].mean(0) - places[c])
+        np.testing.assert_allclose(found, expected if c in closed else np.zeros(3), atol=1e-15)
+    assert contacts[0].patch_x == 9.0  # of another manifold
 
 
 def over_a_disc(v: float, spin: float) -> float:

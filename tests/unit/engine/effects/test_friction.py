@@ -15,9 +15,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn_contacts import put_vector, random_frame
+from interpreted import interpreted, records
 from laboratory import Bench, box, plane, planned, resolved
 
 from lavendersim.engine.contact_problem import ContactProblem
+from lavendersim.engine.effects.friction import make_refresh
+from lavendersim.engine.record_layout import allocate_bodies, allocate_velocities
+from lavendersim.engine.spec import Spec
 from lavendersim.problems.by_kernel import solve_by_kernel
 from lavendersim.problems.residual import contact_velocities
 
@@ -100,3 +105,21 @@ def test_a_solver_by_itself_finds_the_same_velocities(solver: str) -> None:
     u = contact_velocities(problem, made.impulses)
     np.testing.assert_allclose(u[:, 0], MU * LIFTED, atol=ALLOWED)
     np.testing.assert_allclose(np.linalg.norm(u[:, 1:], axis=1), LIFTED, atol=ALLOWED)
+
+
+def test_world_inertias_are_those_of_the_body_turned_with_it(rng) -> None:
+    """R diag R^T, and exactly diag where all moments are one."""
+    spec = Spec(("contact_torque", "friction", "rotation"))
+    bodies, velocities = allocate_bodies(spec, 4), allocate_velocities(spec, 4)
+    turns, moments = [random_frame(rng) for _ in bodies], rng.uniform(0.2, 2.0, (4, 3))
+    moments[3] = 0.7
+    for body, turn, own in zip(bodies, turns, moments, strict=True):
+        put_vector(body, "inv_i", own)
+        for i in range(3):
+            for j in range(3):
+                body[f"r{i}{j}"] = turn[i, j]
+    interpreted(make_refresh(spec))(records(bodies), records(velocities))
+    for v, turn, own in zip(velocities, turns, moments, strict=True):
+        found = [[v["j" + "".join(sorted(i + j))] for j in "xyz"] for i in "xyz"]
+        np.testing.assert_allclose(found, turn @ np.diag(own) @ turn.T, atol=1e-15)
+    assert [velocities[f"j{axis}"][3] for axis in ("xx", "yy", "zz", "xy")] == [0.7, 0.7, 0.7, 0.0]

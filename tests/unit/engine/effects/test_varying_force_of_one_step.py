@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from convex import matrix_of
-from interpreted import interpreted
+from interpreted import interpreted, records
 from interpreted_steps import Steps
 from laboratory import body, resolved
 from plain_facts import one_row
 
-from lavendersim.engine.effects.varying_force import make_pushes
+from lavendersim.engine.effects.varying_force import make_pushes, make_step_row
+from lavendersim.engine.record_layout import allocate_bodies, step_row_dtype
 from lavendersim.engine.spec import Spec
 
 SPEC = Spec(effects=("midpoint", "pose_log", "rotation", "step_log", "varying_force"))
@@ -49,3 +50,13 @@ NAMES = [f"{name}_{axis}" for name in ("force", "torque") for axis in "xyz"]
 def test_a_body_is_pushed_where_any_part_of_force_or_torque_is_not_zero(own: str) -> None:
     fields = dict.fromkeys(NAMES, 0.0) | ({own: -1e-300} if own else {})
     assert bool(interpreted(make_pushes(SPEC))(one_row(**fields))) == bool(own)
+
+
+def test_a_step_has_the_work_and_the_impulse_of_all_bodies(rng) -> None:
+    bodies, row = allocate_bodies(SPEC, 3), np.zeros(1, step_row_dtype(SPEC))
+    names = ("worked", "pushed_x", "pushed_y", "pushed_z")
+    for name in names:
+        bodies[name] = rng.normal(size=3)
+    interpreted(make_step_row(SPEC))(records(row)[0], records(bodies), None)
+    found = [row[name][0] for name in ("force_work", *(f"force_impulse_{a}" for a in "xyz"))]
+    assert found == pytest.approx([bodies[name].sum() for name in names], rel=1e-14)
