@@ -159,3 +159,30 @@ def test_an_acceleration_is_noted_of_parts_of_some_length(rng) -> None:
     for body, v, m in zip(bodies, velocities, motion, strict=True):
         change = vector(v, "v") - vector(m, "v")
         np.testing.assert_allclose(vector(body, "a"), change / 0.005, rtol=1e-14)
+
+
+def test_ends_of_a_rope_that_pass_each_other_go_apart(rng) -> None:
+    """phi = L - |d| of bodies that move and turn freely: differenced twice, to h^2 and 1e-16/h^2.
+
+    A turn by w t of an arm goes by Rodrigues' formula.
+    """
+
+    def turned(arm: np.ndarray, w: np.ndarray, t: float) -> np.ndarray:
+        angle, axis = np.linalg.norm(w) * t, w / np.linalg.norm(w)
+        across = np.cross(axis, arm)
+        cosine = np.cos(angle)
+        return cosine * arm + np.sin(angle) * across + (1.0 - cosine) * axis * (axis @ arm)
+
+    place, arm, v, w = rng.normal(size=(4, 2, 3))
+
+    def size(t: float) -> float:
+        ends = [place[i] + v[i] * t + turned(arm[i], w[i], t) for i in (0, 1)]
+        return float(np.linalg.norm(ends[1] - ends[0]))
+
+    h = 1e-4
+    expected = -(size(h) - 2.0 * size(0.0) + size(-h)) / h**2
+    ends = [one_row(owner=i, **vector_fields("", place[i] + arm[i])) for i in (0, 1)]
+    bodies = [one_row(**vector_fields("", place[i])) for i in (0, 1)]
+    motion = [one_row(**vector_fields("v", v[i]), **vector_fields("w", w[i])) for i in (0, 1)]
+    kernel = interpreted(approach.make_gap_acceleration_of_rope(TURNS))
+    assert kernel(*ends, bodies, motion) == pytest.approx(expected, rel=1e-5)
