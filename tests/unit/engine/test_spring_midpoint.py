@@ -152,6 +152,19 @@ def test_without_a_damper_it_rings_for_ever() -> None:
     assert abs(found).max() <= 0.1 * (1.0 + 1e-9)
 
 
+def test_far_from_the_origin_it_is_found_to_digits_of_places() -> None:
+    """At 1 km lengths have 1e-13 m, which a stiff spring makes a force of: that is no failure."""
+    far = np.array((1000.0, -700.0, 300.0))
+    for stiffness in (1e4, 1e6, 1e8):
+        for damping in (0.0, 0.01 * stiffness):
+            steps = tied(
+                *(ball(tuple(far + p)) for p in np.array([CENTRE, (0.5, 0.2, 0.1)])),
+                stiffness=stiffness, damping=damping, rest_length=0.5,
+            )  # fmt: skip
+            steps.run(4)
+            assert steps.counters.spring_not_converged == 0
+
+
 def test_a_spring_without_length_or_force_gives_nothing() -> None:
     for place, rest in ((CENTRE, 0.0), ((0.5, 0.0, 0.0), 0.5)):
         steps = tied(ball(CENTRE), ball(place), stiffness=100.0, rest_length=rest)
