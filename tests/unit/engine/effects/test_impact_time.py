@@ -74,6 +74,7 @@ def test_surfaces_meet_where_the_flight_ends_and_leave_by_newtons_law(gap, v, a)
         {"gap": 0.001, "v": 2.0, "acceleration": 9.81},  # it parts
         {"gap": 0.001, "v": -0.1, "acceleration": 30.0},  # it turns back before it is there
         {"gap": 0.0, "v": 0.1, "acceleration": -9.81},  # it parts, from the surface
+        {"gap": 0.0, "v": 0.01, "acceleration": -9.81},  # without a rebound it is no flight
         {"gap": 0.0, "v": -1e-4, "acceleration": -9.81, "e": 0.5},  # a flight within the step
     ],
 )

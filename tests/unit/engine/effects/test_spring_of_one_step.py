@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from convex import matrix_of
 from interpreted_steps import Steps
 from laboratory import body, resolved
@@ -39,3 +40,24 @@ def test_it_pulls_both_bodies_by_one_impulse_at_its_points() -> None:
         np.testing.assert_allclose(mass * speed[k], sign * impulse, atol=1e-14)
         moment = np.cross(matrix @ POINTS[name], sign * impulse)
         np.testing.assert_allclose(inertia @ spin[k], moment, atol=1e-14)
+
+
+@pytest.mark.parametrize("fixed", ["a", "b"])
+def test_the_log_has_the_impulse_that_a_fixed_end_gives(fixed: str) -> None:
+    """The momentum of the body that moves; two that move give each other theirs."""
+    for mass in (1.3, None):
+        bodies = {
+            name: body(BRICK, PLACES[name], mass=1.3, **{"fixed": name == fixed and mass is None})
+            for name in "ab"
+        }
+        cell = resolved(bodies, timestep="1/50")
+        cell["scene"]["springs"] = [
+            {"a": "a", "b": "b", "point_a": (0, 0, 0), "point_b": (0, 0, 0),
+             "stiffness": 80.0, "damping": 3.0, "rest_length": 0.4}
+        ]  # fmt: skip
+        steps = Steps(cell, SPEC)
+        row = steps.run(1)[0]
+        momentum = 1.3 * steps.velocities.sum(axis=0)
+        found = [row[f"spring_impulse_{axis}"] for axis in "xyz"]
+        np.testing.assert_allclose(found, momentum, atol=1e-14)
+        assert (np.linalg.norm(momentum) > 0.1) == (mass is None)

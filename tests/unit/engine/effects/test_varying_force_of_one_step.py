@@ -60,3 +60,13 @@ def test_a_step_has_the_work_and_the_impulse_of_all_bodies(rng) -> None:
     interpreted(make_step_row(SPEC))(records(row)[0], records(bodies), None)
     found = [row[name][0] for name in ("force_work", *(f"force_impulse_{a}" for a in "xyz"))]
     assert found == pytest.approx([bodies[name].sum() for name in names], rel=1e-14)
+
+
+def test_the_work_of_a_part_begins_where_the_body_stands() -> None:
+    cell = resolved({"one": body(BRICK, (0.3, 0.2, -0.1), orientation=TURN.tolist(),
+                                 velocity=(1.0, 2.0, 3.0), angular_velocity=(3.0, -2.0, 1.0))})  # fmt: skip
+    steps = Steps(cell, SPEC)
+    names = ("x", "y", "z", "qw", "qx", "qy", "qz")
+    before = [float(steps.engine.bodies[name][0]) for name in names]
+    steps.run(1)
+    assert [float(steps.engine.bodies[f"from_{name}"][0]) for name in names] == before
