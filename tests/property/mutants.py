@@ -299,3 +299,16 @@ def main() -> int:
     return int(any(row.result == BROKEN for row in results.values()))
 
 
+def _append(path: Path | None, mutant: Mutant, row: Row) -> None:
+    if path is None:
+        return
+    new = not path.exists()
+    with path.open("a", newline="") as file:
+        writer = csv.writer(file)
+        if new:
+            writer.writerow(FIELDS)
+        writer.writerow((*mutant, *row[:-1], f"{row.seconds:.1f}"))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

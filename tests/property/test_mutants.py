@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 
 from tests.property.engine_mutants import Mutant, applied, groups, mutants_of
-from tests.property.explained_mutants import EXPLAINED, change_of, explained
+from tests.property.explained_mutants import EXPLAINED, change_of
 from tests.property.forked_tests import forks
 from tests.property.interpreter_mode import broken
 

@@ -176,3 +176,11 @@ def test_what_resists_the_approach_ends_with_it_and_resists_what_flies_off(e: fl
     interpreted(make_foresee(spec))(contact, one_row(**PARAMETERS), False)
     assert contact.separation_speed == pytest.approx(e * 3.0)
     assert contact.after == pytest.approx(0.5 - e * 2.0)
+
+
+def test_a_flight_from_a_surface_that_ends_in_the_step_ends_in_an_impact() -> None:
+    """By a rebound before: it comes down after 2 v/a, as fast as it left."""
+    v, a = 0.03, -9.81
+    contact = foreseen(gap=0.0, v=v, acceleration=a, e=0.9)
+    assert contact.tau == pytest.approx(2.0 * v / -a, rel=1e-12)
+    assert contact.separation_speed == pytest.approx(0.9 * v, rel=1e-12)

@@ -63,9 +63,9 @@ def test_a_step_has_the_work_and_the_impulse_of_all_bodies(rng) -> None:
 
 
 def test_the_work_of_a_part_begins_where_the_body_stands() -> None:
-    cell = resolved({"one": body(BRICK, (0.3, 0.2, -0.1), orientation=TURN.tolist(),
-                                 velocity=(1.0, 2.0, 3.0), angular_velocity=(3.0, -2.0, 1.0))})  # fmt: skip
-    steps = Steps(cell, SPEC)
+    moving = {"velocity": (1.0, 2.0, 3.0), "angular_velocity": (3.0, -2.0, 1.0)}
+    brick = body(BRICK, (0.3, 0.2, -0.1), orientation=TURN.tolist(), **moving)
+    steps = Steps(resolved({"one": brick}), SPEC)
     names = ("x", "y", "z", "qw", "qx", "qy", "qz")
     before = [float(steps.engine.bodies[name][0]) for name in names]
     steps.run(1)

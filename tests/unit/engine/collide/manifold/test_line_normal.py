@@ -9,21 +9,25 @@ import solids
 from interpreted import interpreted
 from single_bodies import body, row, scratch_of, solid, spec_of, vector
 
+from lavendersim.engine.collide.convex.separation import FACE_SHARE
 from lavendersim.engine.collide.manifold import line_normal
 from lavendersim.engine.vectors import Vec3
 
 ASKEW = 1e-6
 
 
-def better(pair: str, a, b, lines, n):
-    """Return (normal, distance) after the kernel; it is given n and the separation along it."""
+def better(pair: str, a, b, lines, n, more=0.0):
+    """Return (normal, distance) after the kernel.
+
+    It is given n and the separation along it, and so much `more`.
+    """
     scratch = scratch_of([])
     for outline, ends in zip((scratch.outline_a, scratch.outline_b), lines, strict=True):
         for k, end in enumerate(ends):
             outline.corners[k].x, outline.corners[k].y, outline.corners[k].z = end - vector(a[0])
     found = scratch.separation[0]
     found.nx, found.ny, found.nz = n
-    found.distance = solids.separation_along(solid(a), solid(b), n)
+    found.distance = solids.separation_along(solid(a), solid(b), n) + more
     offset = Vec3(*(vector(b[0]) - vector(a[0])))
     interpreted(line_normal.make_line_normal(spec_of(pair)))(row(a), row(b), offset, scratch)
     return vector(found, "n"), found.distance
@@ -90,3 +94,19 @@ def test_a_direction_that_parts_less_and_polyhedra_leave_the_normal(rng) -> None
     boxes = body("box", (0.5, 0.5, 0.5)), body("box", (0.5, 0.5, 0.5), (1.1, 0.0, 0.0))
     kept, _ = better("cylinder_box", *boxes, wrong, n)
     np.testing.assert_array_equal(kept, n)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize(("share", "exact"), [(0.9, True), (1.1, False)])
+def test_what_separates_more_by_the_round_off_of_its_size_is_no_better(size, share, exact) -> None:
+    """Two cylinders that cross; 1e-16 of their size is far below that share of it."""
+    radii, n = np.array([0.2, 0.3]) * size, np.array([0.0, 0.0, 1.0])
+    u, w = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+    a = body("cylinder", (radii[0], 0, size), (0, 0, 0), np.column_stack([n, np.cross(u, n), u]))
+    middle = 0.6 * size * n + 0.1 * size * (u - w)
+    b = body("cylinder", (radii[1], 0, size), middle, np.column_stack([n, np.cross(w, n), w]))
+    sides = axis_ends(a) + radii[0] * n, axis_ends(b) - radii[1] * n
+    more = share * FACE_SHARE * (a["bound"][0] + b["bound"][0])
+    _, distance = better("cylinder_cylinder", a, b, sides, n, more)
+    expected = 0.1 * size + (0.0 if exact else more)
+    assert distance == pytest.approx(expected, abs=0.05 * FACE_SHARE * size)
