@@ -280,13 +280,13 @@ def make_advance(spec: Spec) -> Any:
                     continue
             if controlled:
                 if diverged >= 0:
-                    counters.body, counters.cause = diverged, cause
+                    counters.body = diverged
                 outcome = end_span(state, count, params, counter, log.step, diverged >= 0)
                 if outcome == GO_ON:
                     continue
                 if outcome == MISSED:
-                    if diverged < 0:
-                        counters.cause = INACCURATE
+                    # The substep is taken back, with what it counted.
+                    counters.cause = INACCURATE if diverged < 0 else cause
                     params.dt = params.timestep
                     return DIVERGED
             if in_parts:

@@ -1,4 +1,4 @@
-"""Mutants that no test need see, each with the reason: they change no result, or only what it costs.
+"""Mutants that no test need see, with the reason: they change no result, or only what it costs.
 
 Of a file: the line as it is, as it is broken, and why. Where a line has changed its entry no longer
 stands for anything, and a test says so (`test_mutants`).

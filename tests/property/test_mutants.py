@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from tests.property.engine_mutants import Mutant, applied, groups, mutants_of
+from tests.property.engine_mutants import ENGINE, Mutant, applied, groups, mutants_of
 from tests.property.explained_mutants import EXPLAINED, change_of
 from tests.property.forked_tests import forks
 from tests.property.interpreter_mode import broken
@@ -65,8 +65,8 @@ def test_each_mutant_that_is_explained_is_one_that_can_be_drawn() -> None:
     for file, entries in EXPLAINED.items():
         text = (ROOT / ENGINE / file).read_text()
         changes = [change_of(mutant, text) for mutant in sources[file]]
-        for whole, broken, why in entries:
-            assert changes.count((whole, broken)) == 1, (file, whole, broken)
+        for whole, changed, why in entries:
+            assert changes.count((whole, changed)) == 1, (file, whole, changed)
             assert len(why) > 10
 
 
