@@ -14,6 +14,8 @@ import pytest
 from ball_on_ball import GRAVITY, RADIUS, REACH, SPEED, angle_of, ball_on_ball, pendulum
 from drawn_contacts import put_vector
 from interpreted import interpreted
+from interpreted_steps import Steps
+from laboratory import sphere
 
 from lavendersim.engine import midpoint_passes
 from lavendersim.engine.compile import chain
@@ -47,13 +49,29 @@ def test_it_is_of_second_order() -> None:
     assert errors[0] < 1e-3
 
 
-def test_a_ball_that_lifts_off_flies_from_the_start_of_its_step() -> None:
+@pytest.mark.parametrize("friction", [0.0, 0.9])
+def test_a_ball_that_lifts_off_flies_from_the_start_of_its_step(friction: float) -> None:
     """At v^2 > g R on the top no contact holds it: a parabola, to the last digits."""
-    steps = ball_on_ball(speed=3.0)
+    steps = ball_on_ball(speed=3.0, friction=friction)
     steps.run(5)
     t = 0.05
     expected = (3.0 * t, 0.0, REACH - 0.5 * GRAVITY * t * t)
     np.testing.assert_allclose(steps.places[1], expected, atol=1e-12)
+
+
+def test_a_spring_elsewhere_leaves_passes_as_they_are() -> None:
+    """Energy and the circle are kept, of the ball on a ball and of two balls that swing."""
+    cell = ball_on_ball().bench.cell
+    for name, x in (("one", 3.0), ("other", 3.5)):
+        cell["scene"]["bodies"][name] = sphere(0.1, (x, 0.0, 0.0), velocity=(0.0, 0.5, 0.0))
+    cell["scene"]["springs"] = [{"a": "one", "b": "other", "stiffness": 50.0, "rest_length": 0.4}]
+    steps = Steps(cell)
+    assert steps.spec.has("spring")
+    rows = steps.run(12)
+    energy = rows["kinetic_energy"] + rows["potential_energy"] + rows["spring_energy"]
+    assert rows["midpoint_not_converged"].tolist() == [0] * 12
+    assert np.linalg.norm(steps.places[1]) == pytest.approx(REACH, abs=1e-10)
+    np.testing.assert_allclose(energy, energy[0], atol=2e-9)
 
 
 class Passes:
