@@ -39,10 +39,10 @@ class Meeting(NamedTuple):
     pair: tuple[int, int]
 
 
-def bench_of(places: Any, velocities: Any) -> Bench:
-    """Return elastic balls of 1 kg."""
+def bench_of(places: Any, velocities: Any, restitution: float = 1.0) -> Bench:
+    """Return balls of 1 kg, elastic ones where nothing else is said."""
     balls = {
-        f"ball {k}": sphere(RADIUS, place, velocity=tuple(v), restitution=1.0)
+        f"ball {k}": sphere(RADIUS, place, velocity=tuple(v), restitution=restitution)
         for k, (place, v) in enumerate(zip(places, velocities, strict=True))
     }
     cell = resolved(balls, **NUMERICS)
@@ -237,6 +237,20 @@ def test_the_part_behind_a_meeting_knows_which_it_was() -> None:
     counters = step.counters
     assert (counters.met_a, counters.met_b) == (0, 1)
     assert counters.met_at == 0.02 + length == pytest.approx(0.021, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("met", "at", "meets"),
+    [((0, 1), 0.02, True), ((0, 1), 0.01, False), ((0, 2), 0.02, False), ((2, 1), 0.02, False)],
+)
+def test_a_slow_meeting_is_an_impact_of_the_two_that_met_and_then(met, at, meets) -> None:
+    """Plastic, and slower than forces of now may change it: of others it is a contact that lasts."""
+    step = Step(bench_of([(0, 0, 0), (0.2, 0, 0), (5, 0, 0)], [(0.1, 0, 0)] + 2 * [(0, 0, 0)], 0.0))
+    step.arrays.motion["dvx"] = 5.0
+    step.counters.elapsed = 0.02
+    (step.counters.met_a, step.counters.met_b), step.counters.met_at = met, at
+    _, length = step.part(DT - 0.02)
+    assert length == (0.0 if meets else DT - 0.02)
 
 
 def floor_and_ball(**properties: float) -> Any:
