@@ -8,7 +8,39 @@ from __future__ import annotations
 
 from tests.property.engine_mutants import ENGINE, ROOT, Mutant, applied
 
-EXPLAINED: dict[str, tuple[tuple[str, str, str], ...]] = {}
+EXPLAINED: dict[str, tuple[tuple[str, str, str], ...]] = {
+    "collide/manifold/line_normal.py": (
+        (
+            "d = minus(d, position(scratch.outline_a.corners[0]))",
+            "d = minus(d, position(scratch.outline_a.corners[1]))",
+            "no result: of d only what is across the edge is used, which both its ends share",
+        ),
+    ),
+    "solvers/newton/method.py": (
+        (
+            "lightest = 1.0 / contacts[0].k_n",
+            "lightest = 1.0 * contacts[0].k_n",
+            "cost: the loop takes the least of all 1/k; one below it ends rounds more exactly",
+        ),
+        (
+            "stalled, columns = 0, NO_ROUND",
+            "stalled, columns = 1, NO_ROUND",
+            "cost: shifts are brought on together a round sooner; where rounds end is the law's",
+        ),
+    ),
+    "spring_midpoint.py": (
+        (
+            "change = plus(scaled(along, d), scaled(1.0 / (1.0 + max(stiff, 0.0)), across))",
+            "change = plus(scaled(along, d), scaled(1.0 / (2.0 + max(stiff, 0.0)), across))",
+            "cost: how far a step goes; passes end where nothing is missing, or say that they do not",
+        ),
+        (
+            "body.turn_x, body.turn_y = 0.5 * (m.wx + v.wx), 0.5 * (m.wy + v.wy)",
+            "body.turn_x, body.turn_y = 0.5 * (m.wx + v.wy), 0.5 * (m.wy + v.wy)",
+            "cost: where Newton's method for the mean spin begins, which ends at the same spin",
+        ),
+    ),
+}
 
 
 def change_of(mutant: Mutant, text: str) -> tuple[str, str]:

@@ -44,9 +44,7 @@ def test_a_body_is_carried_by_the_mean_or_by_its_new_velocity(carried, late, spr
     old, new, turn = rng.normal(size=(3, 2, 3))
     body = one_row(sprung=sprung, **vector_fields("turn_", turn[1]))
     rows = [one_row(**vector_fields("v", u), **vector_fields("w", w)) for u, w in (new, old)]
-    motion = one_row(
-        carried=carried, **vector_fields("v", old[0]), **vector_fields("w", old[1])
-    )
+    motion = one_row(carried=carried, **vector_fields("v", old[0]), **vector_fields("w", old[1]))
     out = one_row(**vector_fields("v", np.zeros(3)), **vector_fields("w", np.zeros(3)))
     interpreted(make_mean_velocity(spec))(body, rows[0], motion, out)
     found = [[out[f"{name}{axis}"] for axis in "xyz"] for name in "vw"]

@@ -6,7 +6,7 @@ import convex
 import numpy as np
 import pytest
 from interpreted import interpreted
-from single_bodies import body, row, scratch_of
+from single_bodies import body, manifold, row, scratch_of
 
 from lavendersim.engine.collide.pairs.box_box import load_box, supporting_edge
 from lavendersim.engine.vectors import Vec3
@@ -42,3 +42,20 @@ def test_it_is_the_farthest_of_four_and_named_by_the_sides_that_n_looks_to(
         np.testing.assert_allclose(p, middles[expected], atol=1e-15)
         names.add(which)
     assert names == {0, 1, 2, 3}
+
+
+@pytest.mark.parametrize("gap", [0.03, 1e-3, 1e-5])
+@pytest.mark.parametrize("beside", [0.1, 0.5, 1.0])
+def test_boxes_that_pass_each_other_at_an_edge_are_as_far_apart_as_their_edges(
+    gap: float, beside: float
+) -> None:
+    """The face that separates most looks past the other box: it is that edge that is nearest."""
+    half = (0.2, 0.3, 0.4)
+    apart = gap * np.array([1.0, beside, 0.0])
+    a, b = body("box", half), body("box", half, 2.0 * np.array(half) * (1.0, 1.0, 0.0) + apart)
+    found = manifold("box_box", a, b, 0.1, effects=("rotation", "speculative"))
+    assert len(found.phi) == 1
+    distance = float(np.linalg.norm(apart))
+    assert found.phi[0] == pytest.approx(distance, rel=1e-6, abs=1e-14)
+    # Along each axis the corner is known to 1e-16 m.
+    np.testing.assert_allclose(found.normal, apart / distance, atol=1e-15 / distance + 1e-6)
