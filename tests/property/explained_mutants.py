@@ -32,7 +32,7 @@ EXPLAINED: dict[str, tuple[tuple[str, str, str], ...]] = {
         (
             "change = plus(scaled(along, d), scaled(1.0 / (1.0 + max(stiff, 0.0)), across))",
             "change = plus(scaled(along, d), scaled(1.0 / (2.0 + max(stiff, 0.0)), across))",
-            "cost: how far a step goes; passes end where nothing is missing, or say that they do not",
+            "cost: how far a step goes; passes end where nothing is missing, or say that it is",
         ),
         (
             "body.turn_x, body.turn_y = 0.5 * (m.wx + v.wx), 0.5 * (m.wy + v.wy)",

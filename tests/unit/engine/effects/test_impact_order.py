@@ -244,8 +244,9 @@ def test_the_part_behind_a_meeting_knows_which_it_was() -> None:
     [((0, 1), 0.02, True), ((0, 1), 0.01, False), ((0, 2), 0.02, False), ((2, 1), 0.02, False)],
 )
 def test_a_slow_meeting_is_an_impact_of_the_two_that_met_and_then(met, at, meets) -> None:
-    """Plastic, and slower than forces of now may change it: of others it is a contact that lasts."""
-    step = Step(bench_of([(0, 0, 0), (0.2, 0, 0), (5, 0, 0)], [(0.1, 0, 0)] + 2 * [(0, 0, 0)], 0.0))
+    """Plastic, and slower than forces of now may change it: of others it is a lasting contact."""
+    places, velocities = [(0, 0, 0), (0.2, 0, 0), (5, 0, 0)], [(0.1, 0, 0), (0, 0, 0), (0, 0, 0)]
+    step = Step(bench_of(places, velocities, 0.0))
     step.arrays.motion["dvx"] = 5.0
     step.counters.elapsed = 0.02
     (step.counters.met_a, step.counters.met_b), step.counters.met_at = met, at
