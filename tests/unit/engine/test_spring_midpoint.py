@@ -236,19 +236,3 @@ def test_impulses_that_are_not_found_are_counted_and_bodies_are_placed() -> None
             np.testing.assert_allclose(moved, momenta, atol=1e-10)
         energy, momenta = now, moved
     assert lost > 0
-
-
-def test_an_uneven_body_that_a_spring_twists_goes_on_by_the_mean_velocity(rng) -> None:
-    """m (x_1 - x_0) = m dt (v_0 + v_1)/2 of each body, whatever it is pulled by."""
-    bodies = [
-        box((0.2, 0.3, 0.1), place, velocity=tuple(rng.normal(size=3)))
-        for place in (CENTRE, (0.5, 0.2, 0.1))
-    ]
-    points = {"point_a": (0.05, 0.1, -0.02), "point_b": (-0.08, 0.03, 0.04)}
-    steps = tied(*bodies, stiffness=300.0, rest_length=0.3, **points)
-    assert steps.spec.has("gyroscopic")
-    places, before = steps.places, steps.velocities
-    steps.run(1)
-    assert abs(steps.velocities - before).max() > 0.1
-    mean = 0.5 * (before + steps.velocities)
-    np.testing.assert_allclose(steps.places - places, STEP * mean, atol=1e-15)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from drawn_contacts import put_vector, random_frame
 from interpreted import interpreted, records
+from interpreted_steps import Steps
 from laboratory import Bench, box, resolved
 
 from lavendersim.engine import spring_midpoint
@@ -188,3 +189,22 @@ def test_newtons_method_has_the_slope_of_the_force(damping: float, monkeypatch, 
             law(links[0], bodies, motion, start, end, DT) for end in (1.0, 1.5)
         )
         assert two - one == pytest.approx(0.5 * slope, rel=1e-12)
+
+
+def test_an_uneven_body_that_a_spring_twists_goes_on_by_the_mean_velocity(rng) -> None:
+    """m (x_1 - x_0) = m dt (v_0 + v_1)/2 of each body, whatever it is pulled by."""
+    bodies = [
+        box((0.2, 0.3, 0.1), place, velocity=tuple(rng.normal(size=3)))
+        for place in ((0.0, 0.0, 0.0), (0.5, 0.2, 0.1))
+    ]
+    points = {"point_a": (0.05, 0.1, -0.02), "point_b": (-0.08, 0.03, 0.04)}
+    cell = resolved(dict(zip("ab", bodies, strict=True)), timestep=DT, integrator="midpoint")
+    spring = {"a": "a", "b": "b", "damping": 0.0, "stiffness": 300.0, "rest_length": 0.3}
+    cell["scene"]["springs"] = [{**spring, **points}]
+    steps = Steps(cell)
+    assert steps.spec.has("gyroscopic")
+    places, before = steps.places, steps.velocities
+    steps.run(1)
+    assert abs(steps.velocities - before).max() > 0.1
+    mean = 0.5 * (before + steps.velocities)
+    np.testing.assert_allclose(steps.places - places, DT * mean, atol=1e-15)

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 import solid_poses
-from interpreted import interpreted, records
 
 from lavendersim.engine.collide import SHAPE_PAIRS, narrow_phase
 from lavendersim.engine.collide.convex import epa, gjk
@@ -18,11 +17,9 @@ from lavendersim.engine.collide.iteration_limits import (
     has_epa,
     has_gjk,
     has_limits,
-    make_count_limits,
 )
 from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.compile import composing
-from lavendersim.engine.memory import allocate_counters
 from lavendersim.engine.spec import Spec
 
 EVERYWHERE = 1e3  # margin [m] that leaves out no pose
@@ -94,16 +91,3 @@ def test_who_runs_out_of_a_small_budget_is_counted_and_nobody_else(
     ]
     assert all(same for same, out in zip(equal, ran_out, strict=True) if not out)
     assert not all(same for same, out in zip(equal, ran_out, strict=True) if out)
-
-
-def test_a_step_counts_what_ran_out_in_all_its_parts() -> None:
-    spec = Spec((*AHEAD, "impact_order"), ("cylinder_hull",))
-    assert all(has(spec) for has in (has_gjk, has_epa, has_ascent, has_advance))
-    names = ("gjk", "epa", "ascent", "advance", "impact")
-    scratch, counters = allocate_scratch(None), allocate_counters()
-    for part in (1, 2):
-        for k, name in enumerate(names):
-            scratch.not_converged[name] = part * (k + 1)
-        interpreted(make_count_limits(spec))(records(scratch), records(counters)[0])
-    found = [int(counters[f"{name}_not_converged"][0]) for name in names]
-    assert found == [3 * (k + 1) for k in range(len(names))]

@@ -81,14 +81,3 @@ def test_points_on_one_line_keep_both_ends():
     line = np.column_stack([np.linspace(-1.0, 1.0, 6), np.zeros(6)])
     kept = reduce_to_four(line, np.linspace(0.0, -1.0, 6))
     assert {-1.0, 1.0} <= set(kept["x"])
-
-
-@pytest.mark.parametrize("place", range(6))
-def test_the_deepest_comes_first_wherever_it_stood(place):
-    """In the middle of a pentagon, where no area is made by it."""
-    angle = 2.0 * np.pi * np.arange(5) / 5.0
-    corners = np.column_stack([np.cos(angle), np.sin(angle)])
-    phi = np.full(6, -1.0)
-    phi[place] = -2.0
-    found = reduce_to_four(np.insert(corners, place, 0.0, axis=0), phi)
-    assert found["feature"][0] == place
