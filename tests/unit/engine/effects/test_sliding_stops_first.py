@@ -45,8 +45,8 @@ def test_it_is_where_the_slip_that_its_rate_opposes_has_gone(rate: float, rng) -
         across = np.eye(3) - np.outer(vector(row, "n"), vector(row, "n"))
         slip, change = across @ (points[1] - points[0]), across @ (rates[1] - rates[0])
         # B's centre accelerates so that the slip is gone at STOP, or never.
-        wanted = -rate * slip / STOP
-        put_vector(scene.bodies[1], "a", vector(scene.bodies[1], "a") + wanted - change)
+        required = -rate * slip / STOP
+        put_vector(scene.bodies[1], "a", vector(scene.bodies[1], "a") + required - change)
         pairs = allocate_pairs(SPEC, 1)
         pairs["friction"] = 0.5
         bodies, _, contacts = views(scene)

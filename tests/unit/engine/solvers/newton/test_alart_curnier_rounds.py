@@ -48,8 +48,8 @@ class Rounds:
             contact, off = contacts[0], script[len(self.starts)]
             self.starts.append(float(contact.lambda_n) - carried)
             self.softness.append(1.0 / (contact.stiff_n * contact.k_n))
-            wanted = carried + (99.0 if off is LOST else off)
-            contact.velocity_n = (contact.start_n - wanted) / contact.stiff_n
+            required = carried + (99.0 if off is LOST else off)
+            contact.velocity_n = (contact.start_n - required) / contact.stiff_n
             return 1, off is not LOST
 
         monkeypatch.setattr(alart_curnier, "make_find_root", lambda spec: find_root)
