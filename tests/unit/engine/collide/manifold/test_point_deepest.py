@@ -23,3 +23,14 @@ def test_the_deepest_comes_first_wherever_it_stood(place: int) -> None:
     points["phi"][:6], points["feature"][:6] = phi, np.arange(6)
     assert interpreted(keep_four)(records(points), 6, Vec3(0.0, 0.0, 1.0)) == 4
     assert points["feature"][0] == place
+
+
+@pytest.mark.parametrize("place", range(1, 6))
+def test_the_farthest_from_it_comes_second(place: int) -> None:
+    """On a line with the deepest, where no third point makes an area."""
+    points = np.zeros(16, dtype(POINT))
+    points["x"][:6] = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5]
+    points["x"][place], points["phi"][0] = 2.0, -1.0
+    points["feature"][:6] = np.arange(6)
+    interpreted(keep_four)(records(points), 6, Vec3(0.0, 0.0, 1.0))
+    assert points["feature"][:2].tolist() == [0, place]
