@@ -18,6 +18,7 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
 from lavendersim.engine.step_doubling import MOST_SUBSTEPS
+from lavendersim.engine.together import Advanced, advance_together
 from lavendersim.measures import applies
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.always import Always
@@ -33,7 +34,7 @@ from lavendersim.trace.whole import INTERRUPTED
 
 from .accuracy import Accuracy
 from .bounds import Bounds
-from .call_length import CallLength, block_steps
+from .call_length import CALL, CallLength, block_steps
 from .cell_outcome import CellOutcome, EndedCell, note_measured
 from .environment import versions
 from .freed_memory import keep_freed_memory
@@ -193,8 +194,9 @@ def run_and_measure(jobs: Sequence[CellJob], began: Began | None = None) -> list
     """Simulate cells, write their logs, and measure each for the cells of the sweep that it is of.
 
     Several are short: of one, a stage takes the processor less time than to fetch the code of that
-    stage into its caches, so each stage is done for all before the next. What ended is noted in the
-    directory of the run. began: called when the kernel of the first is there.
+    stage into its caches, so each stage is done for all before the next; those of one plan advance
+    in one call of a kernel. What ended is noted in the directory of the run. began: called when the
+    kernel of the first is there.
     """
     keep_freed_memory()
     simulated = _simulate(jobs, began, _note_closed)
@@ -279,7 +281,7 @@ def _simulate(
         counters = ready[0][0].counters
         began(lambda: int(counters["step"][0]))
 
-    def noted(job: CellJob, stages: Generator[None, None, Simulated]) -> Any:
+    def noted(job: CellJob, stages: Stages) -> Stages:
         one = yield from stages
         closed(job, one.outcome)
         return one
@@ -289,14 +291,31 @@ def _simulate(
             [
                 noted(job, _simulation(job, scene, engine, signalled))
                 for job, scene, engine in zip(jobs, scenes, ready, strict=True)
-            ]
+            ],
+            _advance,
         )
+
+
+class _Call(NamedTuple):
+    """Steps that an engine is to do."""
+
+    engine: Engine
+    steps: int
+
+
+Stages = Generator[_Call | None, Advanced | None, Simulated]
+
+
+def _advance(calls: Sequence[_Call]) -> list[Advanced]:
+    """Let engines advance together; those that time leaves out ask again, after their signals."""
+    engines, steps = zip(*calls, strict=True)
+    return advance_together(engines, steps, within=int(CALL * 1e9))
 
 
 def _simulation(
     job: CellJob, scene: Scene, ready: tuple[Engine, int], signalled: Callable[[], str]
-) -> Generator[None, None, Simulated]:
-    """Simulate one cell and write its log, in stages.
+) -> Stages:
+    """Simulate one cell and write its log, in stages; steps are done by whoever takes them.
 
     ready: its engine, and what its kernel took [ns]. signalled: names a signal that came.
     """
@@ -318,12 +337,12 @@ def _simulation(
     while True:
         yield
         events.apply_due(done)
-        start = perf_counter_ns()
-        result = RUNNING
+        result, spent = RUNNING, 0
         if done < steps:
             stop = dump.next_stop(done, events.next_stop(min(steps, done + call.steps)))
-            result = engine.advance(stop - done)
-        spent = perf_counter_ns() - start
+            advanced = yield _Call(engine, stop - done)
+            assert advanced is not None
+            result, spent = advanced
         made, done = -done, int(engine.counters["step"][0])
         call.after(made + done, spent * 1e-9)
         if result == DIVERGED:

@@ -13,6 +13,7 @@ from lavendersim.engine.compile import compiler_is_off
 from lavendersim.engine.kernel_store import directory
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import is_compiled
+from lavendersim.engine.together import advance_engines, is_possible
 from lavendersim.errors import UsageError
 
 from .cell import CellJob, compile_kernel, failed, run_and_measure
@@ -59,11 +60,12 @@ def outcomes_of(
         if workers > 1 and done and done >= len(first) and taken / done * left > worth:
             break
         job = ordered[done]
+        most = TOGETHER if done >= len(first) and latest <= BRIEF else 1
+        batch = next(_batches(ordered[done : done + most], most))
+        _load_call(batch)
         compiles = done < len(first) and not is_compiled(job.plan.spec)
         begun = missing.get(job.plan.spec) if compiles else None
         begin = perf_counter()
-        most = TOGETHER if done >= len(first) and latest <= BRIEF else 1
-        batch = next(_batches(ordered[done : done + most], most))
         ended = run_and_measure(batch, _beginning(job, begun, tally, progress))
         spent = perf_counter() - begin - sum(one.outcome.compile_ns for one in ended) / 1e9
         done, taken, latest = done + len(batch), taken + spent, spent / len(batch)
@@ -77,6 +79,7 @@ def outcomes_of(
     tally.begin_in_others()
     most = len(rest) // (BATCHES * workers) if latest <= BRIEF else 1
     batches = [*_batches(rest, most)]
+    _load_call(max(batches, key=len))
     for job, found in _run_in_others(batches, workers, progress):
         tally.end(job)
         yield job, failed(job, found.how) if isinstance(found, Death) else found
@@ -91,6 +94,12 @@ def _batches(jobs: Sequence[CellJob], most: int) -> Iterator[list[CellJob]]:
         batch = jobs[at : max(long, at + 1)]
         at += len(batch)
         yield [*batch]
+
+
+def _load_call(batch: Sequence[CellJob]) -> None:
+    """Have the kernel that several engines advance by, before times are taken or processes made."""
+    if len(batch) > 1 and is_possible():
+        advance_engines()
 
 
 def _is_short(job: CellJob) -> bool:

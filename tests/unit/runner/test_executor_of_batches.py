@@ -79,23 +79,23 @@ def test_cells_of_other_engines_alone_may_have_several_processes(
 def test_a_signal_closes_the_log_of_every_cell_of_a_batch(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It comes in the first call of the second cell: each has the steps of its first call."""
-    from lavendersim.engine.engine import Engine
+    """It comes with the first call: each cell has the steps of that."""
+    from lavendersim.runner import cell
 
     monkeypatch.setattr("lavendersim.runner.call_length.MOST", 20)
     calls: list[int] = []
-    real = Engine.advance
+    real = cell.advance_together
 
-    def advance(engine: Engine, steps: int) -> Any:
-        calls.append(steps)
-        if len([one for one in calls if one]) == 2:
-            os.kill(os.getpid(), signal.SIGTERM)
-        return real(engine, steps)
+    def advance(engines: Any, steps: Any, **how: Any) -> Any:
+        calls.append(len(engines))
+        os.kill(os.getpid(), signal.SIGTERM)
+        return real(engines, steps, **how)
 
     jobs = jobs_of(tmp_path, [0.1, 0.2, 0.3])
-    monkeypatch.setattr(Engine, "advance", advance)
+    monkeypatch.setattr(cell, "advance_together", advance)
     with handled(), pytest.raises(Interrupted, match="SIGTERM"):
         run_and_measure(jobs)
+    assert calls == [3]
     for job in jobs:
         trace = open_trace(job.path, allow_incomplete=True)
         assert trace.status.startswith("interrupted by SIGTERM after step 10")
