@@ -16,7 +16,7 @@ from run_contents import contents
 import lavendersim
 from lavendersim.runner import Finished, cell, executor
 
-# At 1e155 m/s^2 the energy is infinite after some steps; at 40 m/s the ball leaves its bound.
+# At 1e160 m/s the energy is infinite; at 0.3 m the ball stands within the guest.
 WORLDS = """\
 scene:
   gravity: [0, 0, -9.81]
@@ -30,13 +30,14 @@ events:
   - {at: 0.4, body: ball, velocity: [1, 0, 2]}
 duration: 0.6
 sweep:
-  - gravity: {path: scene.gravity, values: [[0, 0, -9.81], [0, 0, 1e155], [0, 0, -3]]}
-    mass: {path: scene.bodies.guest.mass, values: [1, 2, 3, 4, 5, 6]}
-  - speed: {path: events.2.velocity.0, values: [2, 40, 3]}
-    at: {path: events.0.at, values: [0, 0.2, 0.3, 0.55, 10]}
-always: {speed: 30}
+  - gravity: {path: scene.gravity, values: [[0, 0, -9.81], [0, 0, -5], [0, 0, -3]]}
+    mass: {path: scene.bodies.guest.mass, values: [1, 2, 3, 4]}
+    z: {path: scene.bodies.ball.position.2, values: [0.6, 0.3]}
+  - speed: {path: events.2.velocity.2, values: [2, 1e160]}
+    at: {path: events.0.at, values: [0, 0.2, 0.3, 0.55, 0.58]}
+always: {energy: none, speed: none}
 measure:
-  rise: {kind: state_at, body: ball, value: height, time: 0.5}
+  rise: {kind: position, body: ball, along: [0, 0, 1], time: 0.5}
 expect:
   - {name: never so high, measure: rise, at_most: 0.5}
 """
