@@ -19,7 +19,7 @@ from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
 from lavendersim.engine.step_doubling import MOST_SUBSTEPS
 from lavendersim.engine.together import Advanced, advance_together
-from lavendersim.measures import applies
+from lavendersim.measures import applies, outcomes_of
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
@@ -28,14 +28,14 @@ from lavendersim.measures.verdict import failure
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
-from lavendersim.trace import Block, TraceWriter, Written, trace_of
+from lavendersim.trace import Block, Trace, TraceWriter, Written, open_trace, trace_of
 from lavendersim.trace.recorded import described, partly_recorded
 from lavendersim.trace.whole import INTERRUPTED
 
 from .accuracy import Accuracy
 from .bounds import Bounds
 from .call_length import CALL, CallLength, block_steps
-from .cell_outcome import CellOutcome, EndedCell, note_measured
+from .cell_outcome import CellOutcome, EndedCell, note_closed, note_measured
 from .environment import versions
 from .freed_memory import keep_freed_memory
 from .in_turns import in_turns
@@ -43,7 +43,6 @@ from .interruption import deferred, raise_noted
 from .measured import Measured, measure_cell
 from .problem_dump import ProblemDump
 from .run_directory import RunCell
-from .run_index import note_ended
 
 # Called when the kernel of a cell is there, with what reads how many steps are done.
 Began = Callable[[Callable[[], int]], None]
@@ -199,7 +198,7 @@ def run_and_measure(jobs: Sequence[CellJob], began: Began | None = None) -> list
     kernel of the first is there.
     """
     keep_freed_memory()
-    simulated = _simulate(jobs, began, _note_closed)
+    simulated = _simulate(jobs, began, lambda job, outcome: note_closed(job.path, outcome))
     raise_noted()
     ended = []
     for job, one in zip(jobs, simulated, strict=True):
@@ -208,24 +207,35 @@ def run_and_measure(jobs: Sequence[CellJob], began: Began | None = None) -> list
     return ended
 
 
-def _note_closed(job: CellJob, outcome: CellOutcome) -> None:
-    assert outcome.log is not None
-    note_ended(job.path, outcome.status, outcome.log)
-
-
 def measured_run(job: CellJob) -> EndedCell:
     """Simulate one cell, write its log, and measure it; nothing is noted."""
     return _measured(job, simulate(job))
 
 
+def measured_later(job: CellJob, outcome: CellOutcome) -> EndedCell:
+    """Measure a cell whose log was closed by a process that ended before it was measured."""
+    measured = {}
+    for cell in _cells_of(job, outcome, open_trace(job.path)):
+        always = outcomes_of(job.always, cell) if job.always is not None else {}
+        measured[cell.index] = measure_cell(cell, job.measures, None)._replace(always=always)
+    note_measured(job.path, EndedCell(outcome, measured))
+    return EndedCell(outcome, measured)
+
+
 def _measured(job: CellJob, simulated: Simulated) -> EndedCell:
     outcome, written, worst = simulated
-    trace = trace_of(written)
-    measured = {}
-    for index, label, coordinates in job.cells:
-        cell = RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
-        measured[index] = measure_cell(cell, job.measures, worst)
-    return EndedCell(outcome, measured)
+    cells = _cells_of(job, outcome, trace_of(written))
+    return EndedCell(
+        outcome, {cell.index: measure_cell(cell, job.measures, worst) for cell in cells}
+    )
+
+
+def _cells_of(job: CellJob, outcome: CellOutcome, trace: Trace) -> list[RunCell]:
+    """Return the cells of the sweep that a log is of."""
+    return [
+        RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
+        for index, label, coordinates in job.cells
+    ]
 
 
 def failed(job: CellJob, how: str) -> EndedCell:
