@@ -120,21 +120,27 @@ def _run_in_others(
     for batch, found in work(run_and_measure, batches, workers, partial(_run_again, progress)):
         if not isinstance(found, Death):
             yield from zip(batch, found, strict=True)
-        elif len(batch) == 1:
+            continue
+        died = f"the process of {_named(batch)} {found.how} again"
+        if len(batch) == 1:
+            progress.warning(f"{died}; the cell is given up")
             yield batch[0], found
         else:
+            progress.warning(f"{died}; each is run by itself")
             alone += [[job] for job in batch]
     if alone:
         yield from _run_in_others(alone, workers, progress)
 
 
 def _run_again(progress: Progress, one: Retried[list[CellJob]]) -> None:
-    names = [str((job.cells[0].label if job.cells else "") or job.cell) for job in one.task]
-    if len(names) == 1:
-        what, again = f"cell {names[0]}", "the cell is"
-    else:
-        what, again = f"cells {names[0]} to {names[-1]}", f"these {len(names)} cells are"
-    progress.warning(f"the process of {what} {one.death.how}; {again} run once more")
+    count = len(one.task)
+    again = "the cell is" if count == 1 else f"these {count} cells are"
+    progress.warning(f"the process of {_named(one.task)} {one.death.how}; {again} run once more")
+
+
+def _named(batch: Sequence[CellJob]) -> str:
+    names = [str((job.cells[0].label if job.cells else "") or job.cell) for job in batch]
+    return f"cell {names[0]}" if len(names) == 1 else f"cells {names[0]} to {names[-1]}"
 
 
 class _Missing(NamedTuple):
