@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from math import inf
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any, Final, NamedTuple
 
 from lavendersim.engine.compile import compiler_is_off
@@ -27,7 +27,7 @@ from .workers import Death, Retried, work
 WORTH_PROCESSES = 4.0
 FORKED: Final = 0.05  # of it: a process that is forked takes 0.02 to 0.05 s to begin and to end
 # Cells are short whose steps and bodies make no more than this, where the one before them took no
-# longer than BRIEF [s]. They are run together, so many at once: what a signal waits for, and
+# more than BRIEF [s] of the processor. They are run together, so many at once: what a signal waits for, and
 # what a kill takes, is less than a second of work.
 SHORT: Final = 8000
 BRIEF: Final = 0.03
@@ -53,22 +53,28 @@ def outcomes_of(
     apart = _compile_together(missing, workers, progress)
     # The first cell of each plan runs here: it leaves the kernel where other processes find it.
     ordered = sorted(jobs, key=lambda job: first.get(job.plan.choices) is not job)
-    done, taken, latest = 0, 0.0, inf  # and what they took, and each of the last ones [s]
+    # Cells that are done, what they took, and of the processor each of the last ones [s].
+    done, taken, latest = 0, 0.0, inf
     worth = WORTH_PROCESSES * (FORKED if may_fork() else 1.0)
     while done < len(ordered):
         left = len(ordered) - done
-        if workers > 1 and done and done >= len(first) and taken / done * left > worth:
-            break
         job = ordered[done]
-        most = TOGETHER if done >= len(first) and latest <= BRIEF else 1
+        if workers > 1 and done and done >= len(first) and taken / done * left > worth:
+            # The first cell of a plan loads what all others have: another tells whether they are
+            # brief, where they may be enough for batches.
+            if done > len(first) or not _is_short(job) or left - 1 < 2 * BATCHES * workers:
+                break
+        most = TOGETHER if done > len(first) and latest <= BRIEF else 1
         batch = next(_batches(ordered[done : done + most], most))
         _load_call(batch)
         compiles = done < len(first) and not is_compiled(job.plan.spec)
         begun = missing.get(job.plan.spec) if compiles else None
-        begin = perf_counter()
+        begin, begin_here = perf_counter(), process_time()
         ended = run_and_measure(batch, _beginning(job, begun, tally, progress))
-        spent = perf_counter() - begin - sum(one.outcome.compile_ns for one in ended) / 1e9
-        done, taken, latest = done + len(batch), taken + spent, spent / len(batch)
+        compiled = sum(one.outcome.compile_ns for one in ended) / 1e9
+        taken += perf_counter() - begin - compiled
+        latest = (process_time() - begin_here - compiled) / len(batch)
+        done += len(batch)
         for job, one in zip(batch, ended, strict=True):
             tally.end(job)
             compiling = one.outcome.compile_ns + apart.pop(job.path, 0)
@@ -77,7 +83,7 @@ def outcomes_of(
     if not rest:
         return
     tally.begin_in_others()
-    most = len(rest) // (BATCHES * workers) if latest <= BRIEF else 1
+    most = len(rest) // (BATCHES * workers) if done > len(first) and latest <= BRIEF else 1
     batches = [*_batches(rest, most)]
     _load_call(max(batches, key=len))
     for job, found in _run_in_others(batches, workers, progress):

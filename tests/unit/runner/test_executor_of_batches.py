@@ -103,3 +103,32 @@ def test_a_signal_closes_the_log_of_every_cell_of_a_batch(
     rows = ended_rows(tmp_path)
     assert {row["status"][:11] for row in rows.values()} == {"interrupted"}
     assert not any("measured" in row for row in rows.values())
+
+
+def test_a_cold_first_cell_does_not_keep_the_others_from_batches(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It loads what all have in common; one more is run here, and tells that they are brief."""
+    given: list[int] = []
+    spent: list[float] = [0.0]
+
+    def run_here(batch: list[CellJob], began: Any) -> list[Any]:
+        spent.append(spent[-1] + (1.0 if len(spent) == 1 else 0.001))
+        return [failed(*batch, "died")]
+
+    def work(function: Any, batches: Any, *arguments: Any) -> Any:
+        given.extend(map(len, batches))
+        return [(batch, [failed(job, "died") for job in batch]) for batch in batches]
+
+    count = 2 * 2 * executor.BATCHES + 2
+    jobs = jobs_of(tmp_path, [round(0.1 + k / 240, 4) for k in range(count)])
+    monkeypatch.setattr(executor, "run_and_measure", run_here)
+    monkeypatch.setattr(executor, "process_time", lambda: spent[-1])
+    monkeypatch.setattr(executor, "work", work)
+    assert len([*executor.outcomes_of(jobs, 2, Progress())]) == count
+    assert given == [2] * (2 * executor.BATCHES)
+    given.clear()
+    spent[1:] = []
+    left = jobs[:-1]
+    assert len([*executor.outcomes_of(left, 2, Progress())]) == count - 1
+    assert given == [1] * (count - 2)  # too few for batches: no cell is run here to find out
