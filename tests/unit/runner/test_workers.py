@@ -156,8 +156,8 @@ def test_of_cells_that_are_run_together_only_the_deadly_one_fails(
     assert ended == {f"e={e}": "complete" for e in values} | died
     how = "was killed by SIGKILL"
     assert said == [
-        f"the process of cells e=0.5 to e=0.7 {how}; these 3 cells are run once more",
-        f"the process of cells e=0.5 to e=0.7 {how} again; each is run by itself",
+        f"the process of cells e=0.3 to e=0.5 {how}; these 3 cells are run once more",
+        f"the process of cells e=0.3 to e=0.5 {how} again; each is run by itself",
         f"the process of cell e=0.5 {how}; the cell is run once more",
         f"the process of cell e=0.5 {how} again; the cell is given up",
     ]
