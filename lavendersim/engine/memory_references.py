@@ -13,7 +13,6 @@ from __future__ import annotations
 from copy import copy
 from typing import Any
 
-import numpy as np
 from llvmlite.ir import Constant, IntType, Undefined
 from numba.core import cgutils, types
 from numba.core.datamodel.manager import DataModelManager

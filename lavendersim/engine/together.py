@@ -56,7 +56,9 @@ def advance_together(
 
     Those of one machine code advance in one call. within: [ns] after which no other engine begins.
     """
-    targets = [int(engine.counters["step"][0]) + more for engine, more in zip(engines, steps)]
+    targets = [
+        int(engine.counters["step"][0]) + more for engine, more in zip(engines, steps, strict=True)
+    ]
     found: dict[int, Advanced] = {}
     groups: dict[Any, list[int]] = {}
     for number, engine in enumerate(engines):
@@ -109,7 +111,8 @@ def _in_one_call(
 class _Form(NamedTuple):
     """How the memory of engines of one kind lies, in words."""
 
-    arrays: np.ndarray  # (arrays, 2) axes of each and size [B] of an item; parameters, counters last
+    # (arrays, 2) axes of each, and size [B] of an item; parameters and counters come last
+    arrays: np.ndarray
     begins: tuple[int, int]  # words behind which the workspace and the log begin
     words: int
 
@@ -134,8 +137,8 @@ def advance_engines() -> Any:
     """Return `kernel(where, objects, form, memory, call, block)`: the engines of a block advance.
 
     where: address of the step's code, of `memory`, words before the workspace and before the log,
-    time [ns]. objects: (n, arrays) addresses of array objects. form: see `_Form`. memory: (n, words)
-    that it lays memory out in. call: (n, 3) what each took [ns], its steps to do, what it returned.
+    time [ns]. objects: (n, arrays) places of array objects. form: see `_Form`. memory: (n, words)
+    of what it lays out. call: (n, 3) what each took [ns], its steps to do, what it returned.
     """
     kernel = cached(_make_advance_engines, Spec())
     none = np.empty((0, 3), np.int64)
@@ -150,7 +153,7 @@ def _make_advance_engines(spec: Spec) -> Any:
     def advance_engines(where, objects, form, memory, call, block):
         code, place, begins, within = where
         arrays, words = len(form) - 2, memory.shape[1]
-        begin = nanoseconds()
+        begin: Any = nanoseconds()  # type: ignore[call-arg]
         now = begin
         for w in range(block[0], block[1]):
             if now - begin > within:
@@ -174,7 +177,7 @@ def _make_advance_engines(spec: Spec) -> Any:
             params = word_at(objects[w, arrays] + _DATA)
             counters = word_at(objects[w, arrays + 1] + _DATA)
             call[w, _STATUS] = step_at(code, parts, params, counters, call[w, _LEFT])
-            after = nanoseconds()
+            after: Any = nanoseconds()
             call[w, _SPENT] = after - now
             now = after
 

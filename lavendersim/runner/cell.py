@@ -334,7 +334,7 @@ def _simulation(
     in_log = job.in_log or plan_in_log(job.plan)
     absent, metadata = in_log.absent, metadata_of(job, in_log)
     writer = TraceWriter(job.path, job.config, job.as_written, metadata, absent)
-    yield
+    yield None
     # A check finds in a run what it finds in its log.
     unseen = absent | partly_recorded(described(job.config.record))
     bounds = Bounds(job.always, scene.names, job.config, scene.clock, unseen)
@@ -345,7 +345,7 @@ def _simulation(
     call = CallLength(len(scene.names))
     done = stop = 0
     while True:
-        yield
+        yield None
         events.apply_due(done)
         result, spent = RUNNING, 0
         if done < steps:
@@ -357,7 +357,7 @@ def _simulation(
         call.after(made + done, spent * 1e-9)
         if result == DIVERGED:
             status = divergence(scene, engine)
-        yield
+        yield None
         start = perf_counter_ns()
         rows = engine.take_rows()
         if len(rows.step):
@@ -368,7 +368,7 @@ def _simulation(
                 if last < done or result != DIVERGED:
                     result, status, done = STOPPED, broken, last
             logging_ns += perf_counter_ns() - start
-            yield
+            yield None
             start = perf_counter_ns()
             writer.append(block)
             accuracy = accuracy.after(block.step, block.contact, scene.names)
@@ -380,7 +380,7 @@ def _simulation(
         if name := signalled():
             status = interrupted(scene.clock, name, done)
             break
-    yield
+    yield None
     start = perf_counter_ns()
     written = writer.close(status)
     logging_ns += perf_counter_ns() - start

@@ -27,8 +27,8 @@ from .workers import Death, Retried, work
 WORTH_PROCESSES = 4.0
 FORKED: Final = 0.05  # of it: a process that is forked takes 0.02 to 0.05 s to begin and to end
 # Cells are short whose steps and bodies make no more than this, where the one before them took no
-# more than BRIEF [s] of the processor. They are run together, so many at once: what a signal waits for, and
-# what a kill takes, is less than a second of work.
+# more than BRIEF [s] of the processor. They are run together, so many at once: what a signal waits
+# for, and what a kill takes, is less than a second of work.
 SHORT: Final = 8000
 BRIEF: Final = 0.03
 TOGETHER: Final = 16
@@ -59,11 +59,12 @@ def outcomes_of(
     while done < len(ordered):
         left = len(ordered) - done
         job = ordered[done]
-        if workers > 1 and done and done >= len(first) and taken / done * left > worth:
-            # The first cell of a plan loads what all others have: another tells whether they are
-            # brief, where they may be enough for batches.
-            if done > len(first) or not _is_short(job) or left - 1 < 2 * BATCHES * workers:
-                break
+        # The first cell of a plan loads what all others have: another tells whether they are brief,
+        # where they may be enough for batches.
+        is_known = done > len(first) or not _is_short(job) or left - 1 < 2 * BATCHES * workers
+        worth_it = workers > 1 and done and taken / done * left > worth
+        if worth_it and done >= len(first) and is_known:
+            break
         most = TOGETHER if done > len(first) and latest <= BRIEF else 1
         batch = next(_batches(ordered[done : done + most], most))
         _load_call(batch)

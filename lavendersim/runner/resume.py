@@ -75,7 +75,8 @@ def unfinished_run(
 def take_over(run: Run, logs: Collection[str], note: Callable[[str], None]) -> dict[str, EndedCell]:
     """Return the cells that are done by the names of their logs; what else a kill left is removed.
 
-    Of those whose logs were closed and not measured, nothing is. For who holds the run's directory. note: receives how many are run again, and why.
+    Of those whose logs were closed and not measured, nothing is measured yet. For who holds the
+    run's directory. note: receives how many are run again, and why.
     """
     from .cell_outcome import ended_cells  # late: it needs numpy
 

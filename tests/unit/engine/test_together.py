@@ -1,4 +1,4 @@
-"""Engines that advance in one call have the bits that each has alone, of one plan and of several."""
+"""Engines in one call have the bits that each has alone, of one plan and of several."""
 
 from __future__ import annotations
 

@@ -48,10 +48,10 @@ def test_what_one_raises_is_raised_once_the_others_are_closed() -> None:
 
 def test_what_is_asked_for_in_one_turn_is_answered_at_once() -> None:
     def asking(*numbers: int) -> Generator[int | None, int | None, list[int | None]]:
-        yield
+        yield None
         found = []
         for number in numbers:
-            found.append((yield number))
+            found.append((yield number))  # noqa: PERF401 - comprehensions cannot yield
         return found
 
     asked: list[list[int]] = []
