@@ -7,7 +7,7 @@ an address, rows are an address and a count.
                void *parameters, int64 1, void *counters, int64 1, int64 steps)
 
 Like `part_compiler` this leans on what numba keeps to itself: how it calls, and that a raised
-exception is told by a result that is not zero.
+exception is reported by a result that is not zero.
 """
 
 from __future__ import annotations

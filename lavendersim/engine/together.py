@@ -39,7 +39,7 @@ _SPENT, _LEFT, _STATUS = 0, 1, 2  # columns of a call
 _AXES, _ITEM = 0, 1  # columns of the form of memory
 
 
-class Advanced(NamedTuple):
+class EngineAdvance(NamedTuple):
     """What one engine did in a call."""
 
     status: int  # as `Engine.advance` returns it; RUNNING with no step where time was up before
@@ -51,7 +51,7 @@ def advance_together(
     steps: Sequence[int],
     threads: int = 1,
     within: int = NO_LIMIT,
-) -> list[Advanced]:
+) -> list[EngineAdvance]:
     """Do up to so many steps of each engine.
 
     Those of one machine code advance in one call. within: [ns] after which no other engine begins.
@@ -59,7 +59,7 @@ def advance_together(
     targets = [
         int(engine.counters["step"][0]) + more for engine, more in zip(engines, steps, strict=True)
     ]
-    found: dict[int, Advanced] = {}
+    found: dict[int, EngineAdvance] = {}
     groups: dict[Any, list[int]] = {}
     for number, engine in enumerate(engines):
         groups.setdefault(engine.kind, []).append(number)
@@ -70,11 +70,11 @@ def advance_together(
             left = [steps[number] for number in members]
             found |= zip(members, _in_one_call(of_group, left, code, threads, within), strict=True)
     for number, engine in enumerate(engines):
-        one = found.get(number, Advanced(RAISED, 0))
+        one = found.get(number, EngineAdvance(RAISED, 0))
         if one.status in _UNFINISHED:
             begin = time.perf_counter_ns()
             status = engine.advance(targets[number] - int(engine.counters["step"][0]))
-            found[number] = Advanced(status, one.spent + time.perf_counter_ns() - begin)
+            found[number] = EngineAdvance(status, one.spent + time.perf_counter_ns() - begin)
     return [found[number] for number in range(len(engines))]
 
 
@@ -90,7 +90,7 @@ def is_possible() -> bool:
 
 def _in_one_call(
     engines: Sequence[Engine], steps: Sequence[int], code: int, threads: int, within: int
-) -> list[Advanced]:
+) -> list[EngineAdvance]:
     form, begins, words = _form_of(engines[0])
     call = np.empty((len(engines), 3), np.int64)
     call[:, _SPENT], call[:, _LEFT], call[:, _STATUS] = 0, steps, RUNNING
@@ -105,7 +105,7 @@ def _in_one_call(
     else:
         with ThreadPoolExecutor(len(blocks)) as pool:
             list(pool.map(advance, blocks))
-    return [Advanced(status, spent) for spent, _, status in call.tolist()]
+    return [EngineAdvance(status, spent) for spent, _, status in call.tolist()]
 
 
 class _Form(NamedTuple):

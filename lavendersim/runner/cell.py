@@ -18,7 +18,7 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
 from lavendersim.engine.step_doubling import MOST_SUBSTEPS
-from lavendersim.engine.together import Advanced, advance_together
+from lavendersim.engine.together import EngineAdvance, advance_together
 from lavendersim.measures import applies, outcomes_of
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.always import Always
@@ -306,17 +306,17 @@ def _simulate(
         )
 
 
-class _Call(NamedTuple):
+class _StepsAsked(NamedTuple):
     """Steps that an engine is to do."""
 
     engine: Engine
     steps: int
 
 
-Stages = Generator[_Call | None, Advanced | None, Simulated]
+Stages = Generator[_StepsAsked | None, EngineAdvance | None, Simulated]
 
 
-def _advance(calls: Sequence[_Call]) -> list[Advanced]:
+def _advance(calls: Sequence[_StepsAsked]) -> list[EngineAdvance]:
     """Let engines advance together; those that time leaves out ask again, after their signals."""
     engines, steps = zip(*calls, strict=True)
     return advance_together(engines, steps, within=int(CALL * 1e9))
@@ -350,7 +350,7 @@ def _simulation(
         result, spent = RUNNING, 0
         if done < steps:
             stop = dump.next_stop(done, events.next_stop(min(steps, done + call.steps)))
-            advanced = yield _Call(engine, stop - done)
+            advanced = yield _StepsAsked(engine, stop - done)
             assert advanced is not None
             result, spent = advanced
         made, done = -done, int(engine.counters["step"][0])
