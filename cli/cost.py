@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from lavender_cli import printing, progress
-from lavender_cli.going_on import command_of, interruptible
+from lavender_cli.going_on import as_words, command_of, interruptible
 from lavender_cli.prediction import Yes, confirm
 from lavender_cli.run import Configs, Engines, Jobs, Runs, Set, Starts, Strict, Sweep, overrides_of
 
@@ -91,8 +91,9 @@ def cost(
         confirm(([grid] for grid in grids), runs, jobs, yes, [one for one in planned if one])
     tables, missed, interrupted = [], False, ""
     options = {"--target": targets, "--repeats": repeats, "--engine": engine, "--starts": asked}
-    options |= {"--runs": runs, "--quick": quick}
-    go_on = command_of("cost", configs, overrides_of(values, axes), *_given(options), "--resume")
+    options |= {"--runs": runs, "--jobs": jobs if jobs > 1 else None, "--quick": quick}
+    options |= {"--strict": strict, "--no-plot": not plot}
+    go_on = command_of("cost", configs, overrides_of(values, axes), *as_words(options), "--resume")
     for experiment, prepared in zip(experiments, planned, strict=True):
         with interruptible(go_on), progress.reporting(experiment.name) as shown:
             costed = take_cost(
@@ -132,18 +133,6 @@ def cost(
         raise KeyboardInterrupt
     if sought and missed:
         raise typer.Exit(1)
-
-
-def _given(options: dict[str, Any]) -> list[str]:
-    """Return options as they stand on a command line; those without a value are left out."""
-    words: list[str] = []
-    for option, value in options.items():
-        if value is True:
-            words.append(option)
-        elif value:
-            each = value if isinstance(value, list) else [value]
-            words += [word for one in each for word in (option, str(one))]
-    return words
 
 
 def _print_fragments(table: CostTable, several: bool) -> None:

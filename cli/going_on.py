@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import errno
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import typer
 
@@ -38,6 +39,18 @@ def on_full_disk(command: str) -> Iterator[None]:
         if error.errno in DISK:
             typer.echo(f"go on with: {command}", err=True)
         raise
+
+
+def as_words(options: Mapping[str, Any]) -> list[str]:
+    """Return options as they stand on a command line; those without a value are left out."""
+    words: list[str] = []
+    for option, value in options.items():
+        if value is True:
+            words.append(option)
+        elif value:
+            each = value if isinstance(value, list) else [value]
+            words += [word for one in each for word in (option, str(one))]
+    return words
 
 
 def command_of(verb: str, configs: list[Path], overrides: list[str], *options: str) -> str:

@@ -14,7 +14,7 @@ import typer
 from lavender_cli import claims, overheads, printing, progress, time_errors
 from lavender_cli.completion import run_names
 from lavender_cli.drawing import Drawing
-from lavender_cli.going_on import command_of, interruptible, on_full_disk
+from lavender_cli.going_on import as_words, command_of, interruptible, on_full_disk
 from lavender_cli.live import shown_live
 from lavender_cli.prediction import Yes, confirm, with_refined
 from lavender_cli.watch import again
@@ -182,9 +182,19 @@ def run(
         raise typer.BadParameter(f"{executor!r}, expected {DASK!r}", param_hint="--executor")
     # Every file is read before the first run, so a defect anywhere leaves nothing half done.
     overrides = overrides_of(values, axes, engine)
-    where = [] if runs == Path("runs") else ["--runs", str(runs)]
-    where += ["--quick"] if quick else []
-    command = command_of("run", configs, overrides, "--resume", *where)
+    options = {
+        "--runs": runs if runs != Path("runs") else None,
+        "--jobs": jobs if jobs > 1 else None,
+        "--executor": executor,
+        "--dask": dask,
+        "--tag": tags,
+        "--quick": quick,
+        "--strict": strict,
+        "--refine": refine,
+        "--plot": plot,
+        "--json": as_json,
+    }
+    command = command_of("run", configs, overrides, "--resume", *as_words(options))
     with interruptible(command):
         from lavendersim.runner import finished_run, load_all
         from lavendersim.runner import run as run_experiment
@@ -307,7 +317,8 @@ def _run_shard(
         raise UsageError("--shard: expected --into DIR, the folder that its cells are run into")
     if refused := [option for option, given in asked.items() if given]:
         raise UsageError(f"{refused[0]} with --into: cells are not judged before `lavender merge`")
-    given = ["--into", str(into), *(["--shard", shard] if shard is not None else [])]
+    options = {"--into": into, "--shard": shard, "--jobs": jobs if jobs > 1 else None}
+    given = as_words({**options, "--strict": strict})
     command = command_of("run", configs, overrides, *given)
     with interruptible(command), on_full_disk(command):
         from lavendersim.runner import load_all

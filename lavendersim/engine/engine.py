@@ -11,6 +11,7 @@ here; rows of contacts grow when a step needs more.
 
 from __future__ import annotations
 
+from operator import is_
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -52,8 +53,11 @@ class Rows(NamedTuple):
 # Bits of numpy's flags that numba tells arrays apart by: whether rows stand behind each other, may
 # be written, are aligned.
 _FLAGS = 0x0001 | 0x0400 | 0x0100
-# Machine code of kernels by spec and types of the arrays, where it is known.
-_entries: dict[Any, Any] = {}
+# Engines of one spec and of equal types of arrays have one machine code: a kind, by its number.
+_kinds: dict[Any, int] = {}
+# Machine code by kind, where it is known: as Python calls it, and where it lies for other kernels.
+_entries: dict[int, Any] = {}
+_codes: dict[int, int] = {}
 
 
 def _types_of(arrays: Any) -> Any:
@@ -107,12 +111,29 @@ class Engine:
         self.log = self._allocate_log()
         # Looking up the types of forty arrays costs 6 us a call, and 1 ms for the first of an
         # engine; they stay what they are, and are the same in another engine of the scene's plan.
-        self._types = (spec, _types_of((self.state, self.workspace, self.log)))
-        self._entry = _entries.get(self._types)
+        types = spec, _types_of((self.state, self.workspace, self.log))
+        self.kind = _kinds.setdefault(types, len(_kinds))
+        self._entry = _entries.get(self.kind)
+        self._objects: tuple[Any, np.ndarray] = (), np.empty(0, np.int64)
 
     def note_memory(self) -> None:
         """Take up arrays that were put in the place of its own: equal in type, shape and values."""
         self._done = self.counters["step"]
+
+    @property
+    def machine_code(self) -> int:
+        """Where the machine code of its step lies; 0: it is not known, or steps need room first."""
+        return 0 if self._records_sweeps else _codes.get(self.kind, 0)
+
+    def array_objects(self) -> np.ndarray:
+        """Return the addresses of the array objects of its memory, parameters and counters last."""
+        now = self.state, self.workspace, self.log, self.parameters, self.counters
+        before, objects = self._objects
+        if len(before) == len(now) and all(map(is_, before, now)):
+            return objects
+        objects = np.array([*map(id, memory.arrays_of(now))])
+        self._objects = now, objects
+        return objects
 
     @property
     def bodies(self) -> np.ndarray:
@@ -212,7 +233,9 @@ class Engine:
             status = int(self._kernel(*arguments))
         compiled = list(self._kernel.overloads.values())
         if len(compiled) == 1:
-            self._entry = _entries[self._types] = compiled[0].entry_point
+            self._entry = _entries[self.kind] = compiled[0].entry_point
+            symbol = compiled[0].fndesc.llvm_func_name
+            _codes[self.kind] = compiled[0].library.get_pointer_to_function(symbol)
         return status
 
     def take_rows(self) -> Rows:

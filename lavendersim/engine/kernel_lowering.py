@@ -16,6 +16,7 @@ from numba.core.compiler_machinery import register_pass
 from numba.core.lowering import Lower
 from numba.core.typed_passes import NativeLowering
 
+from .compile_options import OPTIONS
 from .kernel_expressions import ShortExpressions
 from .memory_references import for_python
 from .range_loops import RANGE
@@ -107,6 +108,12 @@ def is_direct(context: Any, flags: Any) -> bool:
     """Whether nothing is to be debugged or counted: then `KernelLower` makes the instructions."""
     explained = context.enable_debuginfo or flags.debuginfo or config.DEBUG_JIT  # type: ignore[attr-defined]
     return not (explained or context.enable_nrt)
+
+
+def are_direct() -> bool:
+    """Whether `is_direct` of the kernels of this process, before any was compiled or loaded."""
+    explained = config.DEBUG_JIT or config.DEBUGINFO_DEFAULT  # type: ignore[attr-defined]
+    return OPTIONS.get("_nrt") is False and not explained
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)

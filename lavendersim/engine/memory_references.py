@@ -13,14 +13,12 @@ from __future__ import annotations
 from copy import copy
 from typing import Any
 
-import numpy as np
 from llvmlite.ir import Constant, IntType, Undefined
 from numba.core import cgutils, types
 from numba.core.datamodel.manager import DataModelManager
 from numba.core.datamodel.models import ArrayModel, PrimitiveModel
 from numba.core.datamodel.packer import ArgPacker
 from numba.core.datamodel.registry import default_manager
-from numba.extending import intrinsic
 
 BYTES = IntType(8).as_pointer()
 _size: Any = types.intp
@@ -157,27 +155,3 @@ def _constant(builder: Any, memory: Any, words: int, kind: Any) -> Any:
     value = builder.load(at)
     value.set_metadata("invariant.load", builder.module.add_metadata([]))
     return value
-
-
-def words_of(memory: Any) -> list[int]:
-    """Return memory as it lies where kernels read it: numba's value of each array, in order.
-
-    The arrays must be kept by whoever keeps the words.
-    """
-    if isinstance(memory, tuple):
-        return [word for each in memory for word in words_of(each)]
-    rows: np.ndarray = memory
-    return [0, 0, rows.size, rows.itemsize, rows.ctypes.data, *rows.shape, *rows.strides]
-
-
-@intrinsic
-def memory_at(typingctx, like, words):
-    """Return memory of the type of `like` that lies in an array of int64 (`words_of`)."""
-    if not is_memory(like) or not are_rows(words):
-        return None
-
-    def where(context, builder, signature, arguments):
-        place = REFERENCES[signature.args[1]].get_field_position("data")
-        return builder.bitcast(builder.extract_value(arguments[1], place), BYTES)
-
-    return like(like, words), where

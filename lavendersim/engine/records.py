@@ -45,6 +45,7 @@ CONTACTS_FULL: Final = 2  # contact rows are full: enlarge them and call again; 
 PAIRS_FULL: Final = 4  # rows of pairs are full: likewise
 WOKEN: Final = 5  # bodies woke up, the step begins again with them: call again
 DIVERGED: Final = 3  # the run cannot go on; `counters.body` and `.cause` name the body and why
+RAISED: Final = 6  # of a step called by its address: it raised, and does so again called by Python
 
 # Why a run diverged.
 NOT_FINITE: Final = 0  # the body's state is no longer finite

@@ -18,7 +18,8 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
 from lavendersim.engine.step_doubling import MOST_SUBSTEPS
-from lavendersim.measures import applies
+from lavendersim.engine.together import EngineAdvance, advance_together
+from lavendersim.measures import applies, outcomes_of
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.always import Always
 from lavendersim.measures.specs.catalogue import MeasureSpec
@@ -27,14 +28,14 @@ from lavendersim.measures.verdict import failure
 from lavendersim.scene.build import Scene, build
 from lavendersim.scene.events import EventQueue
 from lavendersim.scene.plan import Plan
-from lavendersim.trace import Block, TraceWriter, Written, trace_of
+from lavendersim.trace import Block, Trace, TraceWriter, Written, open_trace, trace_of
 from lavendersim.trace.recorded import described, partly_recorded
 from lavendersim.trace.whole import INTERRUPTED
 
 from .accuracy import Accuracy
 from .bounds import Bounds
-from .call_length import CallLength, block_steps
-from .cell_outcome import CellOutcome, EndedCell, note_measured
+from .call_length import CALL, CallLength, block_steps
+from .cell_outcome import CellOutcome, EndedCell, note_closed, note_measured
 from .environment import versions
 from .freed_memory import keep_freed_memory
 from .in_turns import in_turns
@@ -42,7 +43,6 @@ from .interruption import deferred, raise_noted
 from .measured import Measured, measure_cell
 from .problem_dump import ProblemDump
 from .run_directory import RunCell
-from .run_index import note_ended
 
 # Called when the kernel of a cell is there, with what reads how many steps are done.
 Began = Callable[[Callable[[], int]], None]
@@ -193,11 +193,12 @@ def run_and_measure(jobs: Sequence[CellJob], began: Began | None = None) -> list
     """Simulate cells, write their logs, and measure each for the cells of the sweep that it is of.
 
     Several are short: of one, a stage takes the processor less time than to fetch the code of that
-    stage into its caches, so each stage is done for all before the next. What ended is noted in the
-    directory of the run. began: called when the kernel of the first is there.
+    stage into its caches, so each stage is done for all before the next; those of one plan advance
+    in one call of a kernel. What ended is noted in the directory of the run. began: called when the
+    kernel of the first is there.
     """
     keep_freed_memory()
-    simulated = _simulate(jobs, began, _note_closed)
+    simulated = _simulate(jobs, began, lambda job, outcome: note_closed(job.path, outcome))
     raise_noted()
     ended = []
     for job, one in zip(jobs, simulated, strict=True):
@@ -206,24 +207,35 @@ def run_and_measure(jobs: Sequence[CellJob], began: Began | None = None) -> list
     return ended
 
 
-def _note_closed(job: CellJob, outcome: CellOutcome) -> None:
-    assert outcome.log is not None
-    note_ended(job.path, outcome.status, outcome.log)
-
-
 def measured_run(job: CellJob) -> EndedCell:
     """Simulate one cell, write its log, and measure it; nothing is noted."""
     return _measured(job, simulate(job))
 
 
+def measured_later(job: CellJob, outcome: CellOutcome) -> EndedCell:
+    """Measure a cell whose log was closed by a process that ended before it was measured."""
+    measured = {}
+    for cell in _cells_of(job, outcome, open_trace(job.path)):
+        always = outcomes_of(job.always, cell) if job.always is not None else {}
+        measured[cell.index] = measure_cell(cell, job.measures, None)._replace(always=always)
+    note_measured(job.path, EndedCell(outcome, measured))
+    return EndedCell(outcome, measured)
+
+
 def _measured(job: CellJob, simulated: Simulated) -> EndedCell:
     outcome, written, worst = simulated
-    trace = trace_of(written)
-    measured = {}
-    for index, label, coordinates in job.cells:
-        cell = RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
-        measured[index] = measure_cell(cell, job.measures, worst)
-    return EndedCell(outcome, measured)
+    cells = _cells_of(job, outcome, trace_of(written))
+    return EndedCell(
+        outcome, {cell.index: measure_cell(cell, job.measures, worst) for cell in cells}
+    )
+
+
+def _cells_of(job: CellJob, outcome: CellOutcome, trace: Trace) -> list[RunCell]:
+    """Return the cells of the sweep that a log is of."""
+    return [
+        RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
+        for index, label, coordinates in job.cells
+    ]
 
 
 def failed(job: CellJob, how: str) -> EndedCell:
@@ -279,7 +291,7 @@ def _simulate(
         counters = ready[0][0].counters
         began(lambda: int(counters["step"][0]))
 
-    def noted(job: CellJob, stages: Generator[None, None, Simulated]) -> Any:
+    def noted(job: CellJob, stages: Stages) -> Stages:
         one = yield from stages
         closed(job, one.outcome)
         return one
@@ -289,14 +301,31 @@ def _simulate(
             [
                 noted(job, _simulation(job, scene, engine, signalled))
                 for job, scene, engine in zip(jobs, scenes, ready, strict=True)
-            ]
+            ],
+            _advance,
         )
+
+
+class _StepsAsked(NamedTuple):
+    """Steps that an engine is to do."""
+
+    engine: Engine
+    steps: int
+
+
+Stages = Generator[_StepsAsked | None, EngineAdvance | None, Simulated]
+
+
+def _advance(calls: Sequence[_StepsAsked]) -> list[EngineAdvance]:
+    """Let engines advance together; those that time leaves out ask again, after their signals."""
+    engines, steps = zip(*calls, strict=True)
+    return advance_together(engines, steps, within=int(CALL * 1e9))
 
 
 def _simulation(
     job: CellJob, scene: Scene, ready: tuple[Engine, int], signalled: Callable[[], str]
-) -> Generator[None, None, Simulated]:
-    """Simulate one cell and write its log, in stages.
+) -> Stages:
+    """Simulate one cell and write its log, in stages; steps are done by whoever takes them.
 
     ready: its engine, and what its kernel took [ns]. signalled: names a signal that came.
     """
@@ -305,7 +334,7 @@ def _simulation(
     in_log = job.in_log or plan_in_log(job.plan)
     absent, metadata = in_log.absent, metadata_of(job, in_log)
     writer = TraceWriter(job.path, job.config, job.as_written, metadata, absent)
-    yield
+    yield None
     # A check finds in a run what it finds in its log.
     unseen = absent | partly_recorded(described(job.config.record))
     bounds = Bounds(job.always, scene.names, job.config, scene.clock, unseen)
@@ -316,19 +345,19 @@ def _simulation(
     call = CallLength(len(scene.names))
     done = stop = 0
     while True:
-        yield
+        yield None
         events.apply_due(done)
-        start = perf_counter_ns()
-        result = RUNNING
+        result, spent = RUNNING, 0
         if done < steps:
             stop = dump.next_stop(done, events.next_stop(min(steps, done + call.steps)))
-            result = engine.advance(stop - done)
-        spent = perf_counter_ns() - start
+            advanced = yield _StepsAsked(engine, stop - done)
+            assert advanced is not None
+            result, spent = advanced
         made, done = -done, int(engine.counters["step"][0])
         call.after(made + done, spent * 1e-9)
         if result == DIVERGED:
             status = divergence(scene, engine)
-        yield
+        yield None
         start = perf_counter_ns()
         rows = engine.take_rows()
         if len(rows.step):
@@ -339,7 +368,7 @@ def _simulation(
                 if last < done or result != DIVERGED:
                     result, status, done = STOPPED, broken, last
             logging_ns += perf_counter_ns() - start
-            yield
+            yield None
             start = perf_counter_ns()
             writer.append(block)
             accuracy = accuracy.after(block.step, block.contact, scene.names)
@@ -351,7 +380,7 @@ def _simulation(
         if name := signalled():
             status = interrupted(scene.clock, name, done)
             break
-    yield
+    yield None
     start = perf_counter_ns()
     written = writer.close(status)
     logging_ns += perf_counter_ns() - start

@@ -1,6 +1,6 @@
 """How a cell ended and what was measured of it, as the process that ran it notes both.
 
-A line of `ended.jsonl` has them all, so a run that is resumed reads no log to go on from there.
+A line of `ended.jsonl` has them all, so a run that is resumed measures no log twice.
 JSON gives back every number as it was, NaN and infinities included.
 """
 
@@ -15,7 +15,7 @@ from lavendersim.trace.whole import LogDigest
 
 from .accuracy import Accuracy, Worst
 from .measured import Measured
-from .run_index import ENDED, append_line, as_row, digest_of, ended_rows
+from .run_index import ENDED, digest_of, ended_rows, note_ended
 
 
 class CellOutcome(NamedTuple):
@@ -35,38 +35,48 @@ class EndedCell(NamedTuple):
     """A cell that ended: how, and what was measured of it."""
 
     outcome: CellOutcome
-    measured: dict[int, Measured]  # by the cells of the sweep that its log is of
+    # By the cells of the sweep that its log is of; of none while it is not measured.
+    measured: dict[int, Measured]
+
+
+def note_closed(log: Path, outcome: CellOutcome, **more: Any) -> None:
+    """Append how a cell ended, and more that is known of it, when its log is closed."""
+    accuracy = outcome.accuracy
+    note_ended(
+        log,
+        outcome.status,
+        outcome.log,
+        outcome=outcome._replace(accuracy=None, log=None)._asdict(),  # type: ignore[arg-type]
+        accuracy=accuracy._asdict()
+        | {"worst": dict(accuracy.worst), "at_limit": dict(accuracy.at_limit)},
+        **more,
+    )
 
 
 def note_measured(log: Path, ended: EndedCell) -> None:
     """Append what was measured of a log to how its cell ended."""
-    outcome, measured = ended
-    row = {
-        "file": log.name,
-        "status": outcome.status,
-        "log": as_row(outcome.log),
-        "outcome": outcome._replace(accuracy=None, log=None)._asdict(),  # type: ignore[arg-type]
-        "accuracy": outcome.accuracy._asdict()
-        | {"worst": dict(outcome.accuracy.worst), "at_limit": dict(outcome.accuracy.at_limit)},
-        "measured": {
-            index: [one.values, {name: list(found) for name, found in one.always.items()}]
-            for index, one in measured.items()
-        },
+    measured = {
+        index: [one.values, {name: list(found) for name, found in one.always.items()}]
+        for index, one in ended.measured.items()
     }
-    append_line(log.parent.parent / ENDED, row)
+    note_closed(log, ended.outcome, measured=measured)
 
 
 def ended_cells(directory: Path) -> dict[str, EndedCell]:
-    """Return the cells that have ended and were measured in a run, by the names of their logs.
+    """Return the cells that have ended in a run, by the names of their logs.
 
-    TraceError where the file that says so is damaged.
+    Of one that was not measured before its process ended, nothing is. TraceError where the file
+    that says so is damaged.
     """
     try:
-        return {
-            name: _ended(row) for name, row in ended_rows(directory).items() if "measured" in row
-        }
+        return {name: _ended(row) for name, row in ended_rows(directory).items() if _is_noted(row)}
     except (ValueError, KeyError, TypeError) as error:
         raise TraceError(f"{directory / ENDED}: damaged: {error}") from None
+
+
+def _is_noted(row: dict[str, Any]) -> bool:
+    """Whether a line has how the cell ended; those of older versions do when it is measured."""
+    return "outcome" in row or "measured" in row
 
 
 def _ended(row: dict[str, Any]) -> EndedCell:
@@ -76,6 +86,6 @@ def _ended(row: dict[str, Any]) -> EndedCell:
     outcome = row["outcome"] | {"accuracy": Accuracy(**accuracy | {"worst": worst}), "log": log}
     measured = {
         int(index): Measured(values, {name: Outcome(*one) for name, one in always.items()})
-        for index, (values, always) in row["measured"].items()
+        for index, (values, always) in row.get("measured", {}).items()
     }
     return EndedCell(CellOutcome(**outcome), measured)

@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from math import inf
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any, Final, NamedTuple
 
 from lavendersim.engine.compile import compiler_is_off
 from lavendersim.engine.kernel_store import directory
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step import is_compiled
+from lavendersim.engine.together import advance_engines, is_possible
 from lavendersim.errors import UsageError
 
 from .cell import CellJob, compile_kernel, failed, run_and_measure
@@ -26,8 +27,8 @@ from .workers import Death, Retried, work
 WORTH_PROCESSES = 4.0
 FORKED: Final = 0.05  # of it: a process that is forked takes 0.02 to 0.05 s to begin and to end
 # Cells are short whose steps and bodies make no more than this, where the one before them took no
-# longer than BRIEF [s]. They are run together, so many at once: what a signal waits for, and
-# what a kill takes, is less than a second of work.
+# more than BRIEF [s] of the processor. They are run together, so many at once: what a signal waits
+# for, and what a kill takes, is less than a second of work.
 SHORT: Final = 8000
 BRIEF: Final = 0.03
 TOGETHER: Final = 16
@@ -52,21 +53,29 @@ def outcomes_of(
     apart = _compile_together(missing, workers, progress)
     # The first cell of each plan runs here: it leaves the kernel where other processes find it.
     ordered = sorted(jobs, key=lambda job: first.get(job.plan.choices) is not job)
-    done, taken, latest = 0, 0.0, inf  # and what they took, and each of the last ones [s]
+    # Cells that are done, what they took, and of the processor each of the last ones [s].
+    done, taken, latest = 0, 0.0, inf
     worth = WORTH_PROCESSES * (FORKED if may_fork() else 1.0)
     while done < len(ordered):
         left = len(ordered) - done
-        if workers > 1 and done and done >= len(first) and taken / done * left > worth:
-            break
         job = ordered[done]
+        # The first cell of a plan loads what all others have: another tells whether they are brief,
+        # where they may be enough for batches.
+        is_known = done > len(first) or not _is_short(job) or left - 1 < 2 * BATCHES * workers
+        worth_it = workers > 1 and done and taken / done * left > worth
+        if worth_it and done >= len(first) and is_known:
+            break
+        most = TOGETHER if done > len(first) and latest <= BRIEF else 1
+        batch = next(_batches(ordered[done : done + most], most))
+        _load_call(batch)
         compiles = done < len(first) and not is_compiled(job.plan.spec)
         begun = missing.get(job.plan.spec) if compiles else None
-        begin = perf_counter()
-        most = TOGETHER if done >= len(first) and latest <= BRIEF else 1
-        batch = next(_batches(ordered[done : done + most], most))
+        begin, begin_here = perf_counter(), process_time()
         ended = run_and_measure(batch, _beginning(job, begun, tally, progress))
-        spent = perf_counter() - begin - sum(one.outcome.compile_ns for one in ended) / 1e9
-        done, taken, latest = done + len(batch), taken + spent, spent / len(batch)
+        compiled = sum(one.outcome.compile_ns for one in ended) / 1e9
+        taken += perf_counter() - begin - compiled
+        latest = (process_time() - begin_here - compiled) / len(batch)
+        done += len(batch)
         for job, one in zip(batch, ended, strict=True):
             tally.end(job)
             compiling = one.outcome.compile_ns + apart.pop(job.path, 0)
@@ -75,8 +84,9 @@ def outcomes_of(
     if not rest:
         return
     tally.begin_in_others()
-    most = len(rest) // (BATCHES * workers) if latest <= BRIEF else 1
+    most = len(rest) // (BATCHES * workers) if done > len(first) and latest <= BRIEF else 1
     batches = [*_batches(rest, most)]
+    _load_call(max(batches, key=len))
     for job, found in _run_in_others(batches, workers, progress):
         tally.end(job)
         yield job, failed(job, found.how) if isinstance(found, Death) else found
@@ -91,6 +101,12 @@ def _batches(jobs: Sequence[CellJob], most: int) -> Iterator[list[CellJob]]:
         batch = jobs[at : max(long, at + 1)]
         at += len(batch)
         yield [*batch]
+
+
+def _load_call(batch: Sequence[CellJob]) -> None:
+    """Have the kernel that several engines advance by, before times are taken or processes made."""
+    if len(batch) > 1 and is_possible():
+        advance_engines()
 
 
 def _is_short(job: CellJob) -> bool:
@@ -111,21 +127,27 @@ def _run_in_others(
     for batch, found in work(run_and_measure, batches, workers, partial(_run_again, progress)):
         if not isinstance(found, Death):
             yield from zip(batch, found, strict=True)
-        elif len(batch) == 1:
+            continue
+        died = f"the process of {_named(batch)} {found.how} again"
+        if len(batch) == 1:
+            progress.warning(f"{died}; the cell is given up")
             yield batch[0], found
         else:
+            progress.warning(f"{died}; each is run by itself")
             alone += [[job] for job in batch]
     if alone:
         yield from _run_in_others(alone, workers, progress)
 
 
 def _run_again(progress: Progress, one: Retried[list[CellJob]]) -> None:
-    names = [str((job.cells[0].label if job.cells else "") or job.cell) for job in one.task]
-    if len(names) == 1:
-        what, again = f"cell {names[0]}", "the cell is"
-    else:
-        what, again = f"cells {names[0]} to {names[-1]}", f"these {len(names)} cells are"
-    progress.warning(f"the process of {what} {one.death.how}; {again} run once more")
+    count = len(one.task)
+    again = "the cell is" if count == 1 else f"these {count} cells are"
+    progress.warning(f"the process of {_named(one.task)} {one.death.how}; {again} run once more")
+
+
+def _named(batch: Sequence[CellJob]) -> str:
+    names = [str((job.cells[0].label if job.cells else "") or job.cell) for job in batch]
+    return f"cell {names[0]}" if len(names) == 1 else f"cells {names[0]} to {names[-1]}"
 
 
 class _Missing(NamedTuple):

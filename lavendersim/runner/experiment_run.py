@@ -260,6 +260,7 @@ def _run_cells(
     configs: the digests of theirs. done: those that ended before, by the names of their logs.
     how: in how many processes or by which executor, and who is shown it.
     """
+    from .cell import measured_later
     from .cell_jobs import different
     from .executor import outcomes_of
     from .remote import run_by
@@ -277,6 +278,9 @@ def _run_cells(
     left = [job for path, job in by_log.items() if path not in ended]
     try:  # what ends meanwhile is noted beside it: see `run_index`
         with handled():
+            for path, outcome in ended.items():
+                if not done[path.name].measured:
+                    taken |= measured_later(by_log[path], outcome).measured
             results = (
                 outcomes_of(left, workers, progress)
                 if isinstance(workers, int)

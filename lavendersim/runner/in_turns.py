@@ -1,28 +1,42 @@
-"""Several generators in turns: a stage of each, then the next stage of each."""
+"""Several generators in turns: a stage of each, then the next stage of each.
+
+What they yield is asked for, and done for all of them at once.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
-from typing import TypeVar
+from collections.abc import Callable, Generator, Sequence
+from typing import Any, TypeVar
 
 Result = TypeVar("Result")
+Asked = TypeVar("Asked")
 
 
-def in_turns(generators: Sequence[Generator[None, None, Result]]) -> list[Result]:
+def in_turns(
+    generators: Sequence[Generator[Asked | None, Any, Result]],
+    together: Callable[[list[Asked]], Sequence[Any]],
+) -> list[Result]:
     """Return what generators return, each advanced to its next `yield` in turns.
 
-    What one of them raises is raised here, once the others are closed.
+    together: returns an answer to each thing but None that they yielded in one turn; generators
+    go on with theirs. What one of them raises is raised here, once the others are closed.
     """
     results: dict[int, Result] = {}
     going = dict(enumerate(generators))
+    answers: dict[int, Any] = {}
     try:
         while going:
+            asked: dict[int, Asked] = {}
             for place, one in list(going.items()):
                 try:
-                    next(one)
+                    what = one.send(answers.get(place))
                 except StopIteration as end:
                     results[place] = end.value
                     del going[place]
+                else:
+                    if what is not None:
+                        asked[place] = what
+            answers = dict(zip(asked, together([*asked.values()]), strict=True)) if asked else {}
     finally:
         for one in going.values():
             one.close()

@@ -64,22 +64,25 @@ class Tally:
 
     def begin(self, job: CellJob, steps_done: Callable[[], int]) -> None:
         """Note that a cell begins here; steps_done: reads how many steps it has done."""
-        self._current = job, steps_done
-        self._since = self._now()
+        with self._lock:
+            self._current = job, steps_done
+            self._since = self._now()
 
     def begin_in_others(self) -> None:
         """Note that from now on other processes run cells."""
-        self._in_others = True
-        self._worked_before, self._since = self._worked, self._now()
-        self._steps_before = sum(job.config.steps for job in self._ended)
+        steps = sum(job.config.steps for job in self._ended)
+        with self._lock:
+            self._in_others, self._steps_before = True, steps
+            self._worked_before, self._since = self._worked, self._now()
 
     def end(self, job: CellJob) -> None:
         """Note that a cell has ended, wherever it ran."""
-        if not self._in_others and self._since is not None:
-            self._worked += self._now() - self._since
-            self._since = None
-        self._current = None
-        self._ended.append(job)
+        with self._lock:  # who reads in between would find it neither running nor ended
+            if not self._in_others and self._since is not None:
+                self._worked += self._now() - self._since
+                self._since = None
+            self._current = None
+            self._ended.append(job)
 
     @cached_property
     def _whole(self) -> tuple[int, float]:
@@ -96,8 +99,6 @@ class Tally:
                 self._seconds += _duration(job)
                 self._bytes += _size(job)
             self._summed = ended
-            if current is not None and ended and self._ended[ended - 1] is current[0]:
-                current = None  # it ended in between
             done = current[1]() if current is not None else 0
             in_cell = float(current[0].config.clock.time(done)) if current is not None else 0.0
             steps, seconds = self._whole

@@ -131,6 +131,8 @@ def _results(
                     warning(f"the worker of cell {name} {lost}; the cell is run once more")
                     waiting.append((job, number + 1))
                 else:
+                    name = job.cells[0].label or job.cell
+                    warning(f"the worker of cell {name} {lost} again; the cell is given up")
                     yield job, lost
     finally:
         for future in running:

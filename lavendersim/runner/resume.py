@@ -2,9 +2,10 @@
 
     newest run of the experiment -> its cells that ended -> logs that are whole -> done
 
-A cell is done when it completed, was measured, and its log is byte for byte the one that its run
-wrote, with the versions that are installed. All else is run again into the same directory, so that
-in the end it holds what a run holds that was never interrupted.
+A cell is done when it completed, and its log is byte for byte the one that its run wrote, with the
+versions that are installed; one whose log was closed but not yet measured is measured now. All else
+is run again into the same directory, so that in the end it holds what a run holds that was never
+interrupted.
 """
 
 from __future__ import annotations
@@ -74,7 +75,8 @@ def unfinished_run(
 def take_over(run: Run, logs: Collection[str], note: Callable[[str], None]) -> dict[str, EndedCell]:
     """Return the cells that are done by the names of their logs; what else a kill left is removed.
 
-    For who holds the run's directory. note: receives how many are run again, and why.
+    Of those whose logs were closed and not measured, nothing is measured yet. For who holds the
+    run's directory. note: receives how many are run again, and why.
     """
     from .cell_outcome import ended_cells  # late: it needs numpy
 
@@ -93,6 +95,8 @@ def take_over(run: Run, logs: Collection[str], note: Callable[[str], None]) -> d
     for left in run.path.rglob(UNFINISHED):
         left.unlink()
     note(f"goes on with {run.path}: {len(done)} of {len(logs)} cells are done")
+    if count := sum(not one.measured for one in done.values()):
+        note(f"{count} measured now: the log was closed")
     for why, count in again.items():
         note(f"{count} run again: {why}")
     return done
@@ -116,7 +120,7 @@ def _why_again(log: Path, status: str, ended: EndedCell | None) -> str:
     if status != COMPLETE:
         return "failed: diverged, broke a bound or lost its process"
     if ended is None:
-        return "not measured yet"
+        return "it was not noted how it ended"
     try:
         trace = open_trace(log, expected=ExpectedLog(digest=ended.outcome.log))
         trace.verify()

@@ -1,10 +1,11 @@
 """How cells of a run ended, one line a cell, `ended.jsonl`; digests of logs as JSON has them.
 
 While cells run, the index (`cells_index`) has them as pending, and two lines are appended here for
-each that ends, the second with what was measured (`cell_outcome`): to write all of the index every
-time would take, of a sweep, the square of its cells. Who reads the index reads both. A line is one
-write by the process that ran the cell, so it is whole after a kill or is not counted. It is not
-flushed to the disk: after a power loss it may speak of a log that is cut, which its digest shows.
+each that ends, when its log is closed and when that is measured (`cell_outcome`): to write all of
+the index every time would take, of a sweep, the square of its cells. Who reads the index reads
+both. A line is one write by the process that ran the cell, so it is whole after a kill or is not
+counted. It is not flushed to the disk: after a power loss it may speak of a log that is cut, which
+its digest shows.
 """
 
 from __future__ import annotations
@@ -36,9 +37,9 @@ def digest_of(row: Mapping[str, Any] | None) -> LogDigest | None:
     return LogDigest(row["bytes"], int(row["crc32"], 16), row["sha256"]) if row else None
 
 
-def note_ended(log: Path, status: str, digest: LogDigest) -> None:
-    """Append how the cell of a log ended, when the log is closed."""
-    row = {"file": log.name, "status": status, "log": as_row(digest)}
+def note_ended(log: Path, status: str, digest: LogDigest | None, **more: Any) -> None:
+    """Append how the cell of a log ended, and more that is known of it."""
+    row = {"file": log.name, "status": status, "log": as_row(digest), **more}
     append_line(log.parent.parent / ENDED, row)
 
 

@@ -272,6 +272,7 @@ def ended_in(into: Path) -> dict[str, list[tuple[Path, EndedCell]]]:
     found: dict[str, list[tuple[Path, EndedCell]]] = {}
     for shard in shards_in(into):
         for name, one in ended_cells(shard).items():
-            if not one.outcome.status.startswith(INTERRUPTED) and one.outcome.log is not None:
+            interrupted = one.outcome.status.startswith(INTERRUPTED)
+            if one.measured and not interrupted and one.outcome.log is not None:
                 found.setdefault(name, []).append((shard, one))
     return found

@@ -66,7 +66,7 @@ def test_cells_that_are_run_are_not_run_again(
         with pytest.raises(KeyboardInterrupt):
             cost([costed], plot=False, quick=True, values=["duration=0.4"])
     said = capsys.readouterr()
-    command = f"lavender cost {costed} --set duration=0.4 --runs runs --quick --resume"
+    command = f"lavender cost {costed} --set duration=0.4 --runs runs --quick --no-plot --resume"
     assert f"go on with: {command}" in said.err
     (left,) = (one for one in Path("runs").iterdir() if one.name != "latest")
     cost([costed], plot=False, quick=True, resume=True, values=["duration=0.4"])

@@ -10,7 +10,13 @@ import pytest
 from lavendersim.errors import TraceError
 from lavendersim.measures.verdict import Outcome
 from lavendersim.runner.accuracy import Accuracy, Worst
-from lavendersim.runner.cell_outcome import CellOutcome, EndedCell, ended_cells, note_measured
+from lavendersim.runner.cell_outcome import (
+    CellOutcome,
+    EndedCell,
+    ended_cells,
+    note_closed,
+    note_measured,
+)
 from lavendersim.runner.measured import Measured
 from lavendersim.runner.run_index import ENDED, note_ended
 from lavendersim.trace import LogDigest
@@ -34,7 +40,12 @@ def test_a_nan_stays_one(tmp_path: Path) -> None:
     assert math.isnan(ended_cells(tmp_path)["a.mcap"].measured[0].values["speed"])
 
 
-def test_a_cell_of_which_nothing_was_measured_has_not_ended_here(tmp_path: Path) -> None:
+def test_a_cell_whose_log_was_closed_has_ended_and_is_not_measured(tmp_path: Path) -> None:
+    note_closed(tmp_path / "cells" / "a.mcap", OUTCOME)
+    assert ended_cells(tmp_path) == {"a.mcap": EndedCell(OUTCOME, {})}
+
+
+def test_a_line_of_an_older_version_does_not_say_how_a_cell_ended(tmp_path: Path) -> None:
     note_ended(tmp_path / "cells" / "a.mcap", "complete", LOG)
     assert ended_cells(tmp_path) == {}
 

@@ -79,23 +79,23 @@ def test_cells_of_other_engines_alone_may_have_several_processes(
 def test_a_signal_closes_the_log_of_every_cell_of_a_batch(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It comes in the first call of the second cell: each has the steps of its first call."""
-    from lavendersim.engine.engine import Engine
+    """It comes with the first call: each cell has the steps of that."""
+    from lavendersim.runner import cell
 
     monkeypatch.setattr("lavendersim.runner.call_length.MOST", 20)
     calls: list[int] = []
-    real = Engine.advance
+    real = cell.advance_together
 
-    def advance(engine: Engine, steps: int) -> Any:
-        calls.append(steps)
-        if len([one for one in calls if one]) == 2:
-            os.kill(os.getpid(), signal.SIGTERM)
-        return real(engine, steps)
+    def advance(engines: Any, steps: Any, **how: Any) -> Any:
+        calls.append(len(engines))
+        os.kill(os.getpid(), signal.SIGTERM)
+        return real(engines, steps, **how)
 
     jobs = jobs_of(tmp_path, [0.1, 0.2, 0.3])
-    monkeypatch.setattr(Engine, "advance", advance)
+    monkeypatch.setattr(cell, "advance_together", advance)
     with handled(), pytest.raises(Interrupted, match="SIGTERM"):
         run_and_measure(jobs)
+    assert calls == [3]
     for job in jobs:
         trace = open_trace(job.path, allow_incomplete=True)
         assert trace.status.startswith("interrupted by SIGTERM after step 10")
@@ -103,3 +103,32 @@ def test_a_signal_closes_the_log_of_every_cell_of_a_batch(
     rows = ended_rows(tmp_path)
     assert {row["status"][:11] for row in rows.values()} == {"interrupted"}
     assert not any("measured" in row for row in rows.values())
+
+
+def test_a_cold_first_cell_does_not_keep_the_others_from_batches(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It loads what all have in common; one more is run here, and tells that they are brief."""
+    given: list[int] = []
+    spent: list[float] = [0.0]
+
+    def run_here(batch: list[CellJob], began: Any) -> list[Any]:
+        spent.append(spent[-1] + (1.0 if len(spent) == 1 else 0.001))
+        return [failed(*batch, "died")]
+
+    def work(function: Any, batches: Any, *arguments: Any) -> Any:
+        given.extend(map(len, batches))
+        return [(batch, [failed(job, "died") for job in batch]) for batch in batches]
+
+    count = 2 * 2 * executor.BATCHES + 2
+    jobs = jobs_of(tmp_path, [round(0.1 + k / 240, 4) for k in range(count)])
+    monkeypatch.setattr(executor, "run_and_measure", run_here)
+    monkeypatch.setattr(executor, "process_time", lambda: spent[-1])
+    monkeypatch.setattr(executor, "work", work)
+    assert len([*executor.outcomes_of(jobs, 2, Progress())]) == count
+    assert given == [2] * (2 * executor.BATCHES)
+    given.clear()
+    spent[1:] = []
+    left = jobs[:-1]
+    assert len([*executor.outcomes_of(left, 2, Progress())]) == count - 1
+    assert given == [1] * (count - 2)  # too few for batches: no cell is run here to find out

@@ -9,6 +9,10 @@ import pytest
 from lavendersim.runner.in_turns import in_turns
 
 
+def nothing(asked: list[object]) -> list[object]:
+    raise AssertionError(f"{asked}: nobody asks for anything")
+
+
 def counted(name: str, stages: int, seen: list[str]) -> Generator[None, None, str]:
     try:
         for stage in range(stages):
@@ -24,19 +28,37 @@ def counted(name: str, stages: int, seen: list[str]) -> Generator[None, None, st
 
 def test_a_stage_of_each_comes_before_the_next_stage_of_any() -> None:
     seen: list[str] = []
-    found = in_turns([counted("a", 2, seen), counted("b", 0, seen), counted("c", 1, seen)])
+    found = in_turns([counted("a", 2, seen), counted("b", 0, seen), counted("c", 1, seen)], nothing)
     assert found == ["a", "b", "c"]
     stages = [one for one in seen if "closed" not in one]
     assert stages == ["a0", "b.", "c0", "a1", "c.", "a."]
 
 
 def test_none_are_none() -> None:
-    assert in_turns([]) == []
+    assert in_turns([], nothing) == []
 
 
 def test_what_one_raises_is_raised_once_the_others_are_closed() -> None:
     seen: list[str] = []
     with pytest.raises(OSError, match="x"):
-        in_turns([counted("a", 3, seen), counted("x", 1, seen), counted("b", 3, seen)])
+        in_turns([counted("a", 3, seen), counted("x", 1, seen), counted("b", 3, seen)], nothing)
     assert [one for one in seen if "closed" in one] == ["x closed", "a closed", "b closed"]
     assert "b1" not in seen
+
+
+def test_what_is_asked_for_in_one_turn_is_answered_at_once() -> None:
+    def asking(*numbers: int) -> Generator[int | None, int | None, list[int | None]]:
+        yield None
+        found = []
+        for number in numbers:
+            found.append((yield number))  # noqa: PERF401 - comprehensions cannot yield
+        return found
+
+    asked: list[list[int]] = []
+
+    def squares(numbers: list[int]) -> list[int]:
+        asked.append(numbers)
+        return [number**2 for number in numbers]
+
+    assert in_turns([asking(2, 3), asking(), asking(0)], squares) == [[4, 9], [], [0]]
+    assert asked == [[2, 0], [3]]

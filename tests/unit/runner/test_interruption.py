@@ -94,9 +94,9 @@ def interrupted(runs: Path, name: str, command: list[str], logs: int) -> tuple[P
 def test_a_run_that_is_interrupted_closes_its_log_and_says_so(tmp_path: Path, name: str) -> None:
     runs, config = tmp_path / "runs", write(tmp_path, ENDLESS.format(durations="[500, 501]"))
     command = ["-m", "lavender_cli.main", "run", str(config), "--yes", "--runs", str(runs)]
-    directory, said = interrupted(runs, name, command, logs=1)
+    directory, said = interrupted(runs, name, [*command, "--tag", "a", "--plot"], logs=1)
     assert f"interrupted by {name}: 0 of 2 cells are whole, {directory}\n" in said
-    assert f"go on with: lavender run {config} --resume --runs {runs}\n" in said
+    assert f"go on with: lavender run {config} --resume --runs {runs} --tag a --plot\n" in said
     (log,) = (directory / "cells").glob("*.mcap")
     with pytest.raises(TraceError, match=f"interrupted by {name} after step"):
         open_trace(log)

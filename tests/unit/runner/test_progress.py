@@ -67,6 +67,25 @@ def test_simulated_time_steps_and_bytes_are_those_of_the_cells(jobs: list[CellJo
     assert between.remaining == pytest.approx(12.0)
 
 
+def test_a_cell_that_ends_while_somebody_reads_is_not_out_of_sight(jobs: list[CellJob]) -> None:
+    """A reader that comes between the two things that are noted waits for both."""
+    tally = Tally(jobs)
+    tally.begin(jobs[0], lambda: 100)
+    seen: list[Moment] = []
+    reader = Thread(target=lambda: seen.append(tally.read()))
+
+    class Ended(list[CellJob]):
+        def append(self, job: CellJob) -> None:
+            reader.start()
+            reader.join(0.1)
+            super().append(job)
+
+    tally._ended = Ended()
+    tally.end(jobs[0])
+    reader.join()
+    assert [one.share for one in seen] == [100 / 400]
+
+
 def test_what_other_processes_take_is_estimated_from_their_own_speed(jobs: list[CellJob]) -> None:
     now = Clock()
     tally = Tally([*jobs, jobs[1]._replace(path=jobs[1].path.with_name("other"))], now)
@@ -80,13 +99,6 @@ def test_what_other_processes_take_is_estimated_from_their_own_speed(jobs: list[
     # 300 steps in 3 s by the others; what this process took alone says nothing of the rest
     assert tally.read().remaining == pytest.approx(3.0)
     assert tally.read().worked == 1003.0
-
-
-def test_a_cell_that_ended_is_never_counted_twice(jobs: list[CellJob]) -> None:
-    tally = Tally(jobs, Clock())
-    tally.begin(jobs[0], lambda: 100)
-    tally._ended.append(jobs[0])  # as another thread sees it in the middle of `end`
-    assert tally.read().share == 100 / 400
 
 
 def test_a_running_cell_is_seen_within_a_call_of_the_kernel(tmp_path: Path) -> None:

@@ -88,7 +88,12 @@ def test_what_a_killed_worker_left_half_written_goes_with_the_run(
 
 
 def test_a_cell_whose_workers_are_lost_both_times_has_failed(drops: Path, tmp_path: Path) -> None:
-    found = run(drops, tmp_path / "runs", executor=Here(lost=100))
+    said: list[str] = []
+    shown = Progress(warning=said.append)
+    found = run(drops, tmp_path / "runs", progress=shown, executor=Here(lost=100))
+    for label in ("e=0.2", "e=0.5", "e=0.8"):
+        lost = f"the worker of cell {label} was lost (RuntimeError)"
+        assert f"{lost} again; the cell is given up" in said
     status = "failed: its process was lost (RuntimeError), both times"
     assert [cell.status for cell in found.run.cells] == [status] * 3
     assert not found.good

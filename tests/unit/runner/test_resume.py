@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import subprocess
@@ -114,7 +115,46 @@ def test_a_line_that_a_kill_has_cut_hides_none_behind_it(drops: Path, tmp_path: 
     (left.path / "ended.jsonl").write_text(lines[: lines.rindex('"measured"')])
     unfinished_again = tmp_path / "runs"
     found, said = resumed(drops, unfinished_again)
-    assert said[1:] == ["1 run again: not measured yet"]
+    assert said[1:] == ["1 measured now: the log was closed"]
+    assert contents(found) == whole
+
+
+# Worst states and their times, and a measure that is no number.
+CHECKED = """\
+always: {penetration: 1e-9, stop: false}
+"""
+
+
+@pytest.mark.parametrize("more", ["", CHECKED])
+def test_logs_that_were_closed_and_not_measured_are_not_run_again(
+    tmp_path: Path, more: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drops = write(tmp_path, DROPS + more)
+    whole = contents(run(drops, tmp_path / "whole").run)
+    with monkeypatch.context() as patch:
+        patch.setattr("lavendersim.runner.cell.note_measured", lambda log, ended: None)
+        left = unfinished(drops, tmp_path / "runs")
+    with monkeypatch.context() as patch:
+        patch.setattr("lavendersim.runner.executor.run_and_measure", None)
+        found, said = resumed(drops, tmp_path / "runs")
+    assert found.path == left.path
+    assert said[1:] == ["3 measured now: the log was closed"]
+    assert contents(found) == whole
+
+
+def test_a_line_of_an_older_version_does_not_do(drops: Path, tmp_path: Path) -> None:
+    """It says that the log was closed, and not in how many steps."""
+    whole = contents(run(drops, tmp_path / "whole").run)
+    left = unfinished(drops, tmp_path / "runs")
+    rows = [json.loads(line) for line in (left.path / "ended.jsonl").read_text().splitlines()]
+    named = rows[0]["file"]
+    for row in rows:
+        if row["file"] == named:
+            for key in ("outcome", "accuracy", "measured"):
+                row.pop(key, None)
+    (left.path / "ended.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+    found, said = resumed(drops, tmp_path / "runs")
+    assert said[1:] == ["1 run again: it was not noted how it ended"]
     assert contents(found) == whole
 
 

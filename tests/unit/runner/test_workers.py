@@ -116,7 +116,9 @@ def test_a_sweep_goes_on_when_the_process_of_a_cell_is_killed(
     finished = lavendersim.run(
         config, root=tmp_path / "runs", jobs=2, progress=Progress(warning=said.append)
     )
-    assert said == ["the process of cell e=0.5 was killed by SIGKILL; the cell is run once more"]
+    died_of = "the process of cell e=0.5 was killed by SIGKILL"
+    given_up = [f"{died_of} again; the cell is given up"] * (times == 2)
+    assert said == [f"{died_of}; the cell is run once more", *given_up]
     sentence = "failed: its process was killed by SIGKILL, both times"
     ended = {cell.label: cell.status for cell in finished.run.cells}
     died = {"e=0.5": sentence} if times == 2 else {}
@@ -154,6 +156,8 @@ def test_of_cells_that_are_run_together_only_the_deadly_one_fails(
     assert ended == {f"e={e}": "complete" for e in values} | died
     how = "was killed by SIGKILL"
     assert said == [
-        f"the process of cells e=0.5 to e=0.7 {how}; these 3 cells are run once more",
+        f"the process of cells e=0.3 to e=0.5 {how}; these 3 cells are run once more",
+        f"the process of cells e=0.3 to e=0.5 {how} again; each is run by itself",
         f"the process of cell e=0.5 {how}; the cell is run once more",
+        f"the process of cell e=0.5 {how} again; the cell is given up",
     ]
