@@ -22,14 +22,12 @@ from .collide.shapes import make_radius, make_support
 from .compile import kernel
 from .contact_lists import make_list_contacts
 from .effects import has_hook
-from .impact_rows import make_keep_present
+from .impact_rows import FLUSH, make_keep_present
 from .records import PLANE, SPHERE, TOUCHING
 from .row_terms import row_terms
 from .spec import Spec
 from .vectors import Vec3, dot, minus, plus, position
 
-# Height of a step that is none, in slops.
-FLUSH = 10.0
 # Normals whose cosine is larger are one.
 ALONG = 1.0 - 1e-12
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .approach import MEETS, make_slowest
+from .approach import FAR, MEETS, make_approach, make_gap_acceleration, make_slowest
 from .compile import kernel
 from .effects import made_once
 from .overlooked_points import make_note_waiting
@@ -13,9 +13,58 @@ from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
 
+# What two bodies that turn close of their last gaps in one instant, in slops. A face that comes
+# down about an edge which lies a slop deep meets with the points next to that edge before others.
+FLUSH = 10.0
+# It meets by a share of their speed at least: what lies there and is shaken brings nothing along.
+SHAKEN = 0.01
+
+
+def make_meet_flush(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, pairs, bodies, motion, first, params)`.
+
+    What else of its two bodies meets in one instant with `first`, a row that meets. What is as good
+    as flush counts as met. What lies there, throws nothing back and parts by what going round bends
+    of a step counts as neither meeting nor parting: the impact may press on it.
+    """
+    gap_acceleration, rebounds = make_gap_acceleration(spec), step_terms(spec).rebounds
+    approach = make_approach(spec)
+    springs, ropes = row_terms(spec).elastic, row_terms(spec).taut
+    bilateral, stopped = row_terms(spec).bilateral, row_terms(spec).stopped
+
+    def meet_flush(contacts, count, pairs, bodies, motion, first, params):
+        for c in range(count):
+            contact = contacts[c]
+            if contact.a != first.a or contact.b != first.b:
+                continue
+            of_surfaces, e = True, 0.0
+            if springs:
+                of_surfaces = of_surfaces and pairs[contact.pair].compliance == 0.0
+            if ropes:
+                of_surfaces = of_surfaces and contact.span == 0.0
+            if bilateral:
+                of_surfaces = of_surfaces and contact.bilateral == 0
+            if stopped:
+                of_surfaces = of_surfaces and contact.stop == 0
+            if not of_surfaces:
+                continue
+            if rebounds:
+                e = pairs[contact.pair].restitution
+            if contact.located == FAR and contact.phi <= FLUSH * params.slop:
+                contact.rate = approach(contact, bodies, motion)  # too little is left to get there
+            if first.rate < SHAKEN * contact.rate:
+                if TOUCHING < contact.phi <= FLUSH * params.slop and contact.rate < 0.0:
+                    contact.phi = TOUCHING
+            if contact.rate > 0.0 and contact.phi <= params.slop and e == 0.0:
+                bent = gap_acceleration(contact, bodies, motion) * params.timestep
+                if contact.rate <= bent:
+                    contact.rate = 0.0
+
+    return kernel(meet_flush, spec)
+
 
 def make_mark_impact(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, pairs, bodies, motion, slop) -> rows` of the impact.
+    """Return `kernel(contacts, count, pairs, bodies, motion, params) -> rows` of the impact.
 
     All others wait.
     """
@@ -29,7 +78,8 @@ def _make_together(spec: Spec) -> Any:
     An impact is handed on from body to body, as far as it goes.
     """
     slowest, springs = make_slowest(spec), row_terms(spec).elastic
-    bilateral = row_terms(spec).bilateral
+    bilateral, turns = row_terms(spec).bilateral, step_terms(spec).turns
+    meet_flush: Any = make_meet_flush(spec) if turns else None
 
     def hands_on(contact, bodies, motion):
         # What does not move hands nothing on.
@@ -38,9 +88,14 @@ def _make_together(spec: Spec) -> Any:
 
     hands_on = kernel(hands_on, spec)
 
-    def mark_impact(contacts, count, pairs, bodies, motion, slop):
+    def mark_impact(contacts, count, pairs, bodies, motion, params):
+        slop = params.slop
         for i in range(motion.shape[0]):
             motion[i].in_impact = 0
+        if turns:
+            for c in range(count):
+                if contacts[c].located == MEETS:
+                    meet_flush(contacts, count, pairs, bodies, motion, contacts[c], params)
         for c in range(count):
             contact = contacts[c]
             takes_part = contact.phi <= TOUCHING or (contact.phi <= slop and contact.waits == 0)

@@ -11,7 +11,8 @@ a contact ahead acts only when it is met, along the normal that it then has.
 Slow meetings are no impacts (`foreseen_impacts`): with a rebound that would end within FLIGHT
 steps, or without rebound below SLOW times what forces change in a step (GLANCING of that across a
 gap, where the path of the contact bends). They are contacts of the motion (`impact_time`). An
-impact takes along what touches and does not part (`impact_rows`), and nothing else. One may have
+impact takes along what touches and does not part, and of its two bodies what is flush with it by
+ten slops, as points of a face that lands (`impact_rows`); nothing else. One may have
 MOST_ROWS rows of contacts, and a step has WORK of them to spend on its parts, or REBOUND where
 something rebounds: there impacts without order may win energy. The rest of one that has spent them
 or meets a larger impact, or whose bodies overlap, is made in one part: its impacts at their times
@@ -203,7 +204,7 @@ def make_order(spec: Spec) -> Any:
             return count, until_stop(state, count, left, params, counters)
         rows = touching
         if meets:
-            rows = mark_impact(contacts, count, state.pairs, bodies, motion, params.slop)
+            rows = mark_impact(contacts, count, state.pairs, bodies, motion, params)
         counters.spent += 1 + rows + count // CANDIDATES_A_ROW
         if counters.spent > work or (meets and rows > MOST_ROWS):
             counters.unordered = 1

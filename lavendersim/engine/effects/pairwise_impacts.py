@@ -16,6 +16,7 @@ from typing import Any
 
 from ..records import TOUCHING
 from ..spec import Spec
+from ..step_terms import step_terms
 from .decision import Decision, Facts
 from .effect import Choice, Effect, Hooks, kernel
 
@@ -33,16 +34,19 @@ def decide(facts: Facts) -> Decision:
 
 
 def make_mark_impact(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, pairs, bodies, motion, slop) -> rows` of the impact.
+    """Return `kernel(contacts, count, pairs, bodies, motion, params) -> rows` of the impact.
 
     They are those between the two bodies that approach fastest, of all that meet.
     """
     from ..approach import MEETS, make_slowest
+    from ..impact_rows import make_meet_flush
     from ..row_terms import row_terms
 
     slowest, springs = make_slowest(spec), row_terms(spec).elastic
+    turns = step_terms(spec).turns
+    meet_flush: Any = make_meet_flush(spec) if turns else None
 
-    def mark_pairs(contacts, count, pairs, bodies, motion, slop):
+    def mark_pairs(contacts, count, pairs, bodies, motion, params):
         fastest = 0.0
         for c in range(count):
             if contacts[c].located == MEETS:
@@ -54,11 +58,13 @@ def make_mark_impact(spec: Spec) -> Any:
             first = contacts[c]
             if first.located != MEETS or first.rate > fastest * (1.0 - EQUAL):
                 continue
+            if turns:
+                meet_flush(contacts, count, pairs, bodies, motion, first, params)
             for d in range(count):
                 contact = contacts[d]
                 if contact.a != first.a or contact.b != first.b or contact.waits == 0:
                     continue
-                takes_part = contact.phi <= max(TOUCHING, slop)
+                takes_part = contact.phi <= max(TOUCHING, params.slop)
                 if springs:
                     takes_part = takes_part and pairs[contact.pair].compliance == 0.0
                 if takes_part and contact.rate <= slowest(contact, bodies, motion):

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from interpreted import interpreted, records
 
-from lavendersim.engine.approach import FAR, MEETS
-from lavendersim.engine.impact_rows import make_keep_present, make_mark_impact
+from lavendersim.engine.approach import FAR, GUESSED, MEETS
+from lavendersim.engine.impact_rows import FLUSH, make_keep_present, make_mark_impact
 from lavendersim.engine.record_layout import allocate_bodies, allocate_pairs, contact_dtype
 from lavendersim.engine.records import MOTION, SPHERE, dtype
 from lavendersim.engine.spec import Spec
 
 SPEC = Spec(effects=("impact_order",))
 SPRINGS = Spec(effects=("compliance", "contact_spring", "impact_order"))
+TURNING = Spec(effects=("impact_order", "restitution", "rotation"))
 SLOP = 1e-4
+PARAMS = SimpleNamespace(slop=SLOP, timestep=0.01)
 
 
 def rows_of(pairs, spec: Spec = SPEC, bodies: int = 8, fixed=(0,)):
@@ -26,14 +30,15 @@ def rows_of(pairs, spec: Spec = SPEC, bodies: int = 8, fixed=(0,)):
     return contacts, found
 
 
-def marked(contacts, bodies, spec: Spec = SPEC, pairs=()):
+def marked(contacts, bodies, spec: Spec = SPEC, pairs=(), spin: float = 0.0):
     """Return how many rows take part, and which, with the bodies of the impact."""
     motion = np.zeros(len(bodies), dtype(MOTION))
     motion["in_impact"] = 1  # of the impact before
+    if spin:
+        motion["wy"], motion["vx"] = spin, 1.0
     mark = interpreted(make_mark_impact(spec))
-    count = mark(
-        records(contacts), len(contacts), records(pairs), records(bodies), records(motion), SLOP
-    )
+    rows, moving = records(contacts), records(motion)
+    count = mark(rows, len(contacts), records(pairs), records(bodies), moving, PARAMS)
     taking = set(np.flatnonzero(contacts["waits"] == 0))
     assert count == len(taking)
     return taking, set(np.flatnonzero(motion["in_impact"]))
@@ -101,6 +106,23 @@ def test_what_joints_hold_takes_part_wherever_its_ends_are() -> None:
         contacts["located"], contacts["phi"] = [MEETS, FAR], [0.0, 100.0 * SLOP]
         contacts["bilateral"] = [0, bilateral]
         assert marked(contacts, bodies, spec)[0] == taking
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5])
+def test_points_of_a_face_meet_together_and_the_edge_it_turns_about_holds(e: float) -> None:
+    """Of one pair: the edge parts by half of what a step bends, a point meets, others are near."""
+    contacts, bodies = rows_of([(0, 1)] * 5 + [(0, 2)], TURNING)
+    pairs = allocate_pairs(TURNING, 1)
+    pairs["restitution"] = e
+    spin, bent = 3.0, 3.0 * 1.0 * PARAMS.timestep  # going round: w v over a step [m/s]
+    contacts["located"] = [GUESSED, MEETS, *[GUESSED] * 4]
+    contacts["phi"] = np.array([-1.0, 0.0, 0.9 * FLUSH, 1.1 * FLUSH, -1.0, 0.9 * FLUSH]) * SLOP
+    contacts["rate"] = [0.5 * bent, -1.0, -3.0, -3.0, 2.0 * bent, -3.0]
+    contacts["waits"] = [1, 0, 1, 1, 1, 1]
+    taking, _ = marked(contacts, bodies, TURNING, pairs, spin)
+    # What may have bounced stays out; so do points that are not flush, and those of other bodies.
+    assert taking == ({1, 2} if e > 0.0 else {0, 1, 2})
+    assert contacts["phi"][2] <= 1e-9  # its gap counts as closed: an instant would not close it
 
 
 @pytest.mark.parametrize("waits", [[0, 0, 0, 0], [1, 0, 1, 0], [0, 1, 1, 1], [1, 1, 1, 1]])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 from interpreted import interpreted, records
 from plain_facts import body_facts, facts, pair_facts
@@ -14,6 +16,7 @@ from lavendersim.engine.spec import Spec
 
 SPEC = Spec(effects=("compliance", "contact_spring", "impact_order", "pairwise_impacts"))
 SLOP = 1e-4
+PARAMS = SimpleNamespace(slop=SLOP, timestep=0.01)
 
 
 def marked(contacts: np.ndarray, compliance=0.0) -> set[int]:
@@ -22,7 +25,7 @@ def marked(contacts: np.ndarray, compliance=0.0) -> set[int]:
     pairs["compliance"] = compliance
     motion = records(np.zeros(8, dtype(MOTION)))
     mark = interpreted(make_mark_impact(SPEC))
-    rows = mark(records(contacts), len(contacts), records(pairs), records(bodies), motion, SLOP)
+    rows = mark(records(contacts), len(contacts), records(pairs), records(bodies), motion, PARAMS)
     taking = set(np.flatnonzero(contacts["waits"] == 0).tolist())
     assert rows == len(taking)
     return taking
