@@ -356,7 +356,9 @@ def resists(begin: tuple[float, float], slip: tuple[float, float], **values: flo
     frame = [np.array([row[f"{t}{x}"] for x in "xyz"]) for t in ("t1", "t2")]
     put_vector(row, "begin_", begin[0] * frame[0] + begin[1] * frame[1])
     for own, v in zip(
-        scene.velocities, (np.linalg.pinv(scene.jacobian) @ (0.0, *slip)).reshape(-1, 6), strict=True
+        scene.velocities,
+        (np.linalg.pinv(scene.jacobian) @ (0.0, *slip)).reshape(-1, 6),
+        strict=True,
     ):
         put_vector(own, "v", v[:3])
         put_vector(own, "w", v[3:])
