@@ -10,8 +10,8 @@ the mean of its old and new velocity where the integrator is `midpoint`, and v_n
 the new one alone it would be moved out of an overlap that it never reaches. The same holds where
 contacts at the middle of the step carry its bodies, of those that push and of those that do not: a
 disc that rolls on one point of its rim would be lifted for the opposite one. So would a body with
-an impact within the step, which moves on its old velocity until then (`integrate`). u is added to the
-poses and dropped.
+an impact within the step, which moves on its old velocity until then (`integrate`). u is added to
+the poses and dropped.
 With every target at zero the solution is u = 0, and the pass ends before it begins.
 """
 
