@@ -28,6 +28,7 @@ from .midpoint_rows import (
     make_begin_slip,
     make_is_turning,
     make_lasting,
+    make_resist,
     make_shift,
     make_widen,
 )
@@ -58,7 +59,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     bilateral, acts = row_terms(spec).bilateral, make_acts(spec)
     uneven = has_hook(spec, "turn_uneven")
     is_turning, begin_slip = make_is_turning(spec), make_begin_slip(spec)
-    lasting = make_lasting(spec)
+    lasting, resist = make_lasting(spec), make_resist(spec)
     keep_start, stay = make_keep_start(spec), make_stay(spec)
     stand_midway, look, shift = make_stand_midway(spec), make_look(spec), make_shift(spec)
     widen, carry_along = make_widen(spec), make_carry_along(spec)
@@ -163,7 +164,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 contact = contacts[c]
                 impulse = impulse_of(contact)
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
-                shift(contact, lead, params)
+                shift(contact, lead, motion, params)
                 if contact.jumps == 1:
                     contact.lasts = 0
                 if contact.lasts == 0:  # it has no middle: what is met there may be elsewhere
@@ -187,6 +188,9 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             torn = False
             if missed <= SAME or k >= SETTLED:
                 torn = carry_along(contacts, count, motion)
+            if friction:
+                if missed <= SAME:
+                    torn = resist(contacts, count, velocities) or torn
             if missed <= SAME and not torn:
                 break
             idle += 1

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-from .block import make_relative_velocity
+from .block import make_relative_velocity, make_slip_velocity
 from .collide.records import UNBOUNDED
 from .compile import kernel
 from .contact import make_normal_velocity
@@ -37,8 +37,9 @@ FORCED, TURNED = 0.05, 0.5
 BEFORE = 2.5
 # It may have a gap of this share of what the turning of its surfaces moves them by.
 AJAR = 0.25
-# Ends of a joint that part by more than this share of what their turning parts them by half a step
-# later are torn: their mean velocity in the step is half of that, not none [-].
+# Ends of a joint that was not held at the middle before, and that part by more than this share of
+# what their turning parts them by half a step later, are torn: their mean velocity in the step is
+# half of that, not none [-].
 TORN = 0.5
 # It slides throughout when the slip is so many times its change.
 SLIDES = 2.0
@@ -180,8 +181,62 @@ def make_begin_slip(spec: Spec) -> Any:
     return kernel(begin_slip, spec)
 
 
+def make_is_held(spec: Spec) -> Any:
+    """Return `kernel(contact, motion) -> whether` its bodies that move were `held` before."""
+
+    def is_held(contact, motion):
+        held = True
+        if contact.inv_m_a > 0.0:
+            held = motion[contact.a].held == 1
+        if contact.inv_m_b > 0.0:
+            held = held and motion[contact.b].held == 1
+        return held
+
+    return kernel(is_held, spec)
+
+
+def make_note_held(spec: Spec) -> Any:
+    """Return `kernel(motion, midway)`, of a part that took time: whose joints the middle held."""
+
+    def note_held(motion, midway):
+        for i in range(motion.shape[0]):
+            motion[i].held = motion[i].midway if midway else 0
+
+    return kernel(note_held, spec)
+
+
+def make_resist(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, velocities) -> whether a row more slides in the mean`.
+
+    Of rows solved at the middle. Where friction has turned since the solve at the start it may push
+    along the slip that the step began with, and would do work on the mean: lambda_t . (w + s_0)/2.
+    There that slip counts, too, as in `begin_slip`. None without friction.
+    """
+    if not row_terms(spec).frictional:
+        return None
+    slip_velocity = make_slip_velocity(spec)
+
+    def resist(contacts, count, velocities):
+        more = False
+        for c in range(count):
+            contact = contacts[c]
+            if contact.lasts == 0 or contact.slides != 0 or contact.lambda_n == 0.0:
+                continue
+            one, two = contact.lambda_1, contact.lambda_2
+            _, v_1, v_2 = slip_velocity(contact, velocities[contact.a], velocities[contact.b])
+            x, y, z = contact.begin_x, contact.begin_y, contact.begin_z
+            s_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+            s_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+            push = sqrt(one * one + two * two)
+            if one * (v_1 + s_1) + two * (v_2 + s_2) > SAME * push:
+                contact.slides, more = 1, True
+        return more
+
+    return kernel(resist, spec)
+
+
 def make_shift(spec: Spec) -> Any:
-    """Return `kernel(contact, lead, params)`, of a row at the middle: b, where a contact lasts."""
+    """Return `kernel(contact, lead, motion, params)`, of a row at the middle: b, where it lasts."""
     terms = row_terms(spec)
     friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")
@@ -190,8 +245,9 @@ def make_shift(spec: Spec) -> Any:
     joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)
+    is_held: Any = make_is_held(spec) if bilateral else None
 
-    def shift(contact, lead, params):
+    def shift(contact, lead, motion, params):
         la, lb = lead[contact.a], lead[contact.b]
         contact.middle_n = normal_velocity(contact, la, lb)
         if bilateral:
@@ -207,10 +263,14 @@ def make_shift(spec: Spec) -> Any:
                 # Of a joint that an impact or its first velocities tear, nothing is thrown back.
                 # The first middle says so: a row that changed its mind would have no fixed point.
                 # All rows of a point leave it the same velocity, or they would contradict.
+                # What the middle before left is no tear, however slowly its bodies turn by now: a
+                # row that left it would do work.
                 parting = Vec3(contact.parting_x, contact.parting_y, contact.parting_z)
                 if contact.torn < 0:
                     ahead = length(joint_velocity(contact, la, lb))
                     contact.torn = 1 if length(parting) > TORN * ahead else 0
+                    if is_held(contact, motion):
+                        contact.torn = 0
                 if contact.torn == 1:
                     contact.target -= dot(Vec3(contact.nx, contact.ny, contact.nz), parting)
                 return

@@ -19,7 +19,7 @@ from .effects import has_hook, made_by, made_once
 from .integrate import keeps_motion, make_classify
 from .joint_turn import make_joint_velocity
 from .midpoint_passes import make_midpoint_passes, make_stand_up
-from .midpoint_rows import make_is_moving, make_lasting
+from .midpoint_rows import make_is_moving, make_lasting, make_note_held
 from .overlooked_points import make_look_over
 from .records import INSTANT
 from .row_terms import make_acts, row_terms
@@ -79,6 +79,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     is_moving: Any = make_is_moving(spec) if centred else None
     bilateral = row_terms(spec).bilateral
     joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
+    joined = bilateral and centred
+    note_held: Any = make_note_held(spec) if joined else None
     midpoint_passes: Any = None
     if centred:
         midpoint_passes = make_midpoint_passes(spec, append_contact, preload, solve)
@@ -160,6 +162,9 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                 moving = moving and workspace.beside.passes[0] == 1
             if moving:
                 midway = midpoint_passes(state, count, workspace, params, counters, log)
+            if joined:
+                if lasts:
+                    note_held(motion, midway)
         return midway
 
     solve_part = kernel(solve_part, spec)

@@ -27,11 +27,11 @@ COLUMNS: Final = (
     *("step", "body_a", "body_b", "nx", "ny", "nz", "t1x", "t1y", "t1z"),
     *("separation", "penetration", "normal_velocity", "impulse_n", "impulse_t1", "impulse_t2"),
     *("friction", "torsional_friction", "angular_impulse_n"),
-    *("rolling_friction", "angular_impulse_t1", "angular_impulse_t2", "joint"),
+    *("rolling_friction", "angular_impulse_t1", "angular_impulse_t2", "joint", "target"),
 )
 STEP, A, B, NX, NY, NZ, T1X, T1Y, T1Z = range(9)
 SEPARATION, PENETRATION, NORMAL_VELOCITY, IMPULSE_N, IMPULSE_T1, IMPULSE_T2 = range(9, 15)
-FRICTION, TORSIONAL, ANGULAR_N, ROLLING, ANGULAR_T1, ANGULAR_T2, JOINT = range(15, 22)
+FRICTION, TORSIONAL, ANGULAR_N, ROLLING, ANGULAR_T1, ANGULAR_T2, JOINT, TARGET = range(15, 23)
 # Columns of what the kernel fills for each step.
 NOT_FINITE, DEEPEST, EXCESS, OUTER_X, OUTER_Y, OUTER_Z, SIZE, OPENED, PULLED = range(9)
 EXPONENT: Final = 0x7FF << 52  # of a float64 that is not finite all these bits are set
@@ -68,6 +68,7 @@ def _make_sum(spec: Spec) -> Any:
         columns, floats, pulls = places
         of_body, mu, choices = scene
         projection, slop, pyramid = choices[0], choices[1], choices[2] == 1.0
+        centred = choices[3] == 1.0
         end, count = 0, numbers.shape[0]
         for i in range(steps.shape[0]):
             dt, pushed, wrong, deepest, most = sums[i, OPENED], 0.0, 0.0, 0.0, 0.0
@@ -118,7 +119,12 @@ def _make_sum(spec: Spec) -> Any:
                 outer_y += sign * jy
                 outer_z += sign * jz
                 total += sqrt(jx * jx + jy * jy + jz * jz)
-                deep = -(row[columns[SEPARATION]] + v_n * dt)
+                rate = v_n
+                if centred and n > 0.0:
+                    mean = 0.5 * (v_n + row[columns[TARGET]])
+                    if mean < rate:
+                        rate = mean
+                deep = -(row[columns[SEPARATION]] + rate * dt)
                 opened += projection * larger(deep - slop, 0.0)
                 pulled += larger(-pull * v_n, 0.0)
                 deepest = larger(row[columns[PENETRATION]], deepest)
@@ -169,7 +175,9 @@ class RunningSums:
                 self._mu[i, j] = self._mu[j, i] = VARIES if varies else between.friction
         numerics = config.numerics
         pyramid = numerics.friction_cone == "pyramid"
-        self._choices = np.array([numerics.projection, numerics.slop, float(pyramid)])
+        centred = numerics.integrator == "midpoint_contact"
+        choices = [numerics.projection, numerics.slop, float(pyramid), float(centred)]
+        self._choices = np.array(choices)
         self._clock = clock
 
     def __call__(self, step: Rows, contacts: Rows) -> ContactSums:

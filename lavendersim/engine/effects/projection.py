@@ -7,9 +7,11 @@ In substeps (`error_control`) the share is that of their length: what a step mov
 does not depend on their number.
 d_1 is the penetration after the velocity step, to first order. A pair that does not push moves by
 the mean of its old and new velocity where the integrator is `midpoint`, and v_n is that mean's: by
-the new one alone it would be moved out of an overlap that it never reaches. So would a body with an
-impact within the step, which moves on its old velocity until then (`integrate`). u is added to the
-poses and dropped.
+the new one alone it would be moved out of an overlap that it never reaches. The same holds where
+contacts at the middle of the step carry its bodies, of those that push and of those that do not: a
+disc that rolls on one point of its rim would be lifted for the opposite one. So would a body with
+an impact within the step, which moves on its old velocity until then (`integrate`). u is added to
+the poses and dropped.
 With every target at zero the solution is u = 0, and the pass ends before it begins.
 """
 
@@ -70,6 +72,21 @@ def make_mean_rate(spec):
     return kernel(mean_rate, spec)
 
 
+def make_moves_by_mean(spec):
+    """Return `kernel(ma, mb) -> whether` another contact carries the bodies of a row by their mean.
+
+    What only flies does so as well, by what forces change. ma, mb: rows of `motion`, classified.
+    """
+    from ..integrate import LASTING
+
+    def moves_by_mean(ma, mb):
+        if ma.carried == LASTING:
+            return mb.carried == LASTING or mb.carried == 0
+        return ma.carried == 0 and mb.carried == LASTING
+
+    return kernel(moves_by_mean, spec)
+
+
 def make_mean_velocity(spec):
     """Return `kernel(body, v, m, out)`: the velocity that carries a body, of what springs turn."""
     from ..integrate import LASTING
@@ -112,6 +129,7 @@ def make(spec):
     bilateral, bounded = row_terms(spec).bilateral, row_terms(spec).bounded
     turned_apart: Any = make_turned_apart(spec) if bilateral else None
     centred, springs = step_terms(spec).centred, row_terms(spec).elastic
+    moves_by_mean: Any = make_moves_by_mean(spec) if centred else None
     at_surface = step_terms(spec).timed_impacts
     mean_rate: Any = make_mean_rate(spec) if at_surface else None
     controlled = step_terms(spec).substeps
@@ -132,7 +150,17 @@ def make(spec):
                 if bilateral:
                     free = free and contact.bilateral == 0
                 if free:
-                    v_n -= 0.5 * contact.dv_n
+                    carried = False
+                    if centred:
+                        carried = moves_by_mean(motion[contact.a], motion[contact.b])
+                        if carried and contact.lasts == 0:
+                            # Its row is that of the start, and bends by the middle (`widen`).
+                            v_n = 0.5 * (v_n + contact.begin_n)
+                            v_n += contact.middle_n - contact.begin_n
+                        elif carried:
+                            v_n = 0.5 * (v_n + contact.middle_n)
+                    if not carried:
+                        v_n -= 0.5 * contact.dv_n
                 elif centred:
                     if contact.lasts == 1:
                         v_n = 0.5 * (v_n + contact.middle_n)

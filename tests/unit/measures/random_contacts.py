@@ -21,7 +21,13 @@ FORMS = {
 }
 
 
-def section(names: list[str], cone: str, wrong: float, seed: int = 0) -> Section:
+def section(
+    names: list[str],
+    cone: str,
+    wrong: float,
+    seed: int = 0,
+    integrator: str = "semi_implicit_euler",
+) -> Section:
     """Return a log of random contacts, a share of whose numbers is out of all bounds."""
     random = np.random.default_rng(seed)
     counts = random.integers(0, 6, STEPS)
@@ -49,7 +55,12 @@ def section(names: list[str], cone: str, wrong: float, seed: int = 0) -> Section
         "crate": {**sphere, "surface": slides},
         "belt": {"shape": {"kind": "box", "size": [1, 1, 1]}, "surface": surface},
     }
-    numerics = {"friction_cone": cone, "slop": 1e-3, "projection": 0.3}
+    numerics = {
+        "friction_cone": cone,
+        "integrator": integrator,
+        "slop": 1e-3,
+        "projection": 0.3,
+    }
     config = made_cell(bodies, numerics=numerics)
     step = np.zeros(STEPS, [("step", "i8")])
     step["step"] = np.arange(STEPS)

@@ -83,3 +83,24 @@ def test_impulse_of_a_joint_has_either_sign() -> None:
     assert not sums_of(part).excess.any()
     part.contact["joint"] = 0
     assert (sums_of(part).excess > 0.0).sum() == len(np.unique(part.contact["step"]))
+
+
+def test_a_contact_at_the_middle_opens_by_its_mean_and_not_by_where_it_ends() -> None:
+    """J (v_0 + v_1)/2 = (v_n + target)/2 of what pushes; the projection opens what it leaves deep.
+
+    A rim that rolls up at V was as deep all the while, though d - V dt is above the surface.
+    """
+    part = section(FORMS["spins"], "disc", 0.0, integrator="midpoint_contact")
+    numerics, contact = part.config.numerics, part.contact
+    deep, rises = numerics.slop + 1e-4, 50.0
+    contact["separation"], contact["normal_velocity"] = -deep, rises
+    contact["target"], contact["impulse_n"] = -rises, 1.0
+    count = np.bincount(contact["step"], minlength=STEPS)
+    np.testing.assert_allclose(sums_of(part).opened, numerics.projection * 1e-4 * count, rtol=1e-11)
+    # What only passes by ends where its velocity leads.
+    contact["impulse_n"] = 0.0
+    assert not sums_of(part).opened.any()
+    # And what ends nearer than its mean is as deep as it ends.
+    contact["impulse_n"], contact["target"] = 1.0, 3.0 * rises
+    contact["normal_velocity"] = 0.0
+    np.testing.assert_allclose(sums_of(part).opened, numerics.projection * 1e-4 * count, rtol=1e-11)

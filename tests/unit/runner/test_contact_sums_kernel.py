@@ -23,8 +23,11 @@ def by_kernel(part: Section) -> ContactSums:
 @pytest.mark.parametrize("cone", ["disc", "pyramid"])
 @pytest.mark.parametrize("wrong", [0.0, 0.01, 0.3])
 @pytest.mark.parametrize("form", FORMS)
-def test_kernel_and_log_give_the_same_bits(form: str, wrong: float, cone: str) -> None:
-    part = section(FORMS[form], cone, wrong)
+@pytest.mark.parametrize("integrator", ["semi_implicit_euler", "midpoint_contact"])
+def test_kernel_and_log_give_the_same_bits(
+    integrator: str, form: str, wrong: float, cone: str
+) -> None:
+    part = section(FORMS[form], cone, wrong, integrator=integrator)
     with np.errstate(all="ignore"):
         of_log = summed(part)
     for name, numbers in zip(ContactSums._fields, by_kernel(part), strict=True):

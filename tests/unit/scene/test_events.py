@@ -10,6 +10,7 @@ from laboratory import body, config, plane, resolved
 
 from lavendersim.cell import CellRecord, TimeWindow
 from lavendersim.engine.engine import Engine
+from lavendersim.engine.records import MOTION, dtype
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.build import Scene, build, residual_window
 from lavendersim.scene.events import EventQueue
@@ -52,7 +53,9 @@ class Bench:
             parameters=self.scene.parameters,
             forget_contacts=lambda *body: self.forgotten.append(body),
             wake=self.woken.append, wake_all=lambda: self.woken.append("all"),
-            state=SimpleNamespace(pairs=self.scene.pairs),
+            state=SimpleNamespace(
+                pairs=self.scene.pairs, motion=np.ones(len(self.scene.bodies), dtype(MOTION))
+            ),
         )  # fmt: skip
         self.queue = EventQueue(engine, self.scene, self.cell.events)
 
