@@ -134,7 +134,10 @@ def fuzz(kept: Kept, plan: Drawn, count: int) -> None:
         return
     shared = compiled(plan)
     begin, laws = time.process_time(), Counter[str]()
+    parent = multiprocessing.parent_process()
     for number in range(first, count):
+        if parent is not None and not parent.is_alive():
+            return
         kept.running.write_text(str(number))
         tree = drawn(plan, kept.engine, kept.seed, number)
         result = judged(tree, shared)
@@ -195,9 +198,9 @@ def main(arguments: list[str]) -> int:
     if not (asked.keep / "finished.csv").exists():
         (asked.keep / "finished.csv").write_text(",".join(HEADING) + "\n")
     share = -(-asked.runs // (asked.plans + 2))
-    engines = {"full": (FULL, share), "joined": (JOINED, share)}
-    for number, plan in enumerate(drawn_plans(asked.plans, asked.seed)):
-        engines[f"plan_{number}"] = (plan, share)
+    drawn_ones = enumerate(drawn_plans(asked.plans, asked.seed))
+    engines = {f"plan_{number}": (plan, share) for number, plan in drawn_ones}
+    engines |= {"joined": (JOINED, share), "full": (FULL, share)}  # dearest: last
     names = asked.only or list(engines)
     if not {*names} <= {*engines}:
         parser.error(f"--only: expected names out of {', '.join(engines)}")
