@@ -1,4 +1,4 @@
-"""Which rows of the log are of a joint: its own and its stops, whatever the features of surfaces."""
+"""Which rows of the log are of a joint: its own and its stops, whatever features surfaces have."""
 
 from __future__ import annotations
 
