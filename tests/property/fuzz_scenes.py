@@ -328,15 +328,15 @@ def grain(pen: _Pen, bodies: dict[str, Any]) -> None:
     Torques have no ellipse, nor has a pyramid: they cannot be with it.
     """
     surfaces = [body["surface"] for body in bodies.values()]
-    rubbing = [one for one in surfaces if one.get("friction", 0.0) > 0.0]
-    if pen.plan.numerics["friction_cone"] == "pyramid" or not rubbing:
+    frictional = [one for one in surfaces if one.get("friction", 0.0) > 0.0]
+    if pen.plan.numerics["friction_cone"] == "pyramid" or not frictional:
         return
     if not pen.has("anisotropic_friction"):
         return
     pen.rolls = False
     for surface in surfaces:
         surface.pop("rolling_friction", None)
-    for surface in rubbing:
+    for surface in frictional:
         surface["across_grain"] = pen.power(-2.0, 1.0)
     for name in pen.some_of([*bodies], len(bodies)):
         bodies[name]["grain"] = pen.some_vector(0.0, 0.0)
