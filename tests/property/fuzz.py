@@ -168,7 +168,7 @@ def in_processes(kept: Kept, plan: Drawn, count: int) -> None:
         kept.finish(kept.next(), number + 1, 0.0, Counter())
 
 
-def told(folder: Path) -> int:
+def summarised(folder: Path) -> int:
     """Say what is finished, and what it was judged by; returns how many runs broke a law."""
     rows = lines(folder)
     total = Counter({key: sum(int(row[key]) for row in rows) for key in ("runs", "finds", *LAWS)})
@@ -194,7 +194,7 @@ def main(arguments: list[str]) -> int:
     asked = parser.parse_args(arguments)
     asked.keep.mkdir(parents=True, exist_ok=True)
     if asked.report:
-        return 1 if told(asked.keep) else 0
+        return 1 if summarised(asked.keep) else 0
     if not (asked.keep / "finished.csv").exists():
         (asked.keep / "finished.csv").write_text(",".join(HEADING) + "\n")
     share = -(-asked.runs // (asked.plans + 2))
@@ -210,7 +210,7 @@ def main(arguments: list[str]) -> int:
             for name in names
         ]:
             done.result()
-    return 1 if told(asked.keep) else 0
+    return 1 if summarised(asked.keep) else 0
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fuzz import HEADING, Find, Kept, drawn, drawn_plans, finds, first_config, fuzz, told
+from fuzz import HEADING, Find, Kept, drawn, drawn_plans, finds, first_config, fuzz, summarised
 from fuzz_laws import ENDLESS, broken, loaded, run
 from fuzz_scenes import EVERY, FORCED, FULL, JOINED, NOT_DRAWN, SOLIDS, Drawn
 from idle import compile_together
@@ -147,7 +147,7 @@ def test_runs_go_on_behind_those_that_are_finished(tmp_path: Path) -> None:
     assert kept.next() == 3
     fuzz(kept, ENGINES["drawn 0"], 5)
     assert [(row["first"], row["runs"]) for row in kept.finished()] == [("0", "3"), ("3", "2")]
-    assert told(tmp_path) == 0
+    assert summarised(tmp_path) == 0
 
 
 def test_what_is_removed_neither_moves_nor_touches(monkeypatch: pytest.MonkeyPatch) -> None:
