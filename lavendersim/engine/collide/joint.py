@@ -31,7 +31,7 @@ DIRECTIONS, WITH_A, SLIDING = 16, 3, 6
 # Of what moves about, or along, z of A's end: the motor, and from the next on the stops.
 ABOUT, ALONG = 8, 11
 LOWER, UPPER = 1, 2
-# Features of joints: eight for each, from here on; no shape has as many.
+# Features of joints: eight for each, from here on. Those of surfaces may be as large.
 FIRST_JOINT = 1 << 49
 ROWS = 8
 

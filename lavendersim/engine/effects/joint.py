@@ -83,10 +83,16 @@ def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
 
 def make_contact_row(spec: Spec) -> Kernel:
     """Return `kernel(out, contact, va, vb)` that fills its column of a contact."""
-    from ..collide.joint import FIRST_JOINT, number_of
+    from ..collide.joint import number_of
+    from ..row_terms import row_terms
+
+    stopped = row_terms(spec).stopped
 
     def log_joint(out, contact, va, vb):
-        out.joint = number_of(contact.feature) if contact.feature >= FIRST_JOINT else 0
+        of_joint = contact.bilateral == 1  # no feature tells: those of surfaces may be as large
+        if stopped:
+            of_joint = of_joint or contact.stop == 1
+        out.joint = number_of(contact.feature) if of_joint else 0
 
     return kernel(log_joint, spec)
 
