@@ -21,7 +21,7 @@ SHAKEN = 0.01
 
 
 def make_meet_flush(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, pairs, bodies, motion, first, params)`.
+    """Return `kernel(state, count, first, params)`.
 
     What else of its two bodies meets in one instant with `first`, a row that meets. What is as good
     as flush counts as met. What lies there, throws nothing back and parts by what going round bends
@@ -32,14 +32,15 @@ def make_meet_flush(spec: Spec) -> Any:
     springs, ropes = row_terms(spec).elastic, row_terms(spec).taut
     bilateral, stopped = row_terms(spec).bilateral, row_terms(spec).stopped
 
-    def meet_flush(contacts, count, pairs, bodies, motion, first, params):
+    def meet_flush(state, count, first, params):
+        contacts, pairs, bodies, motion = state.contacts, state.pairs, state.bodies, state.motion
         for c in range(count):
             contact = contacts[c]
             if contact.a != first.a or contact.b != first.b:
                 continue
             of_surfaces, e = True, 0.0
             if springs:
-                of_surfaces = of_surfaces and pairs[contact.pair].compliance == 0.0
+                of_surfaces = pairs[contact.pair].compliance == 0.0
             if ropes:
                 of_surfaces = of_surfaces and contact.span == 0.0
             if bilateral:
@@ -64,7 +65,7 @@ def make_meet_flush(spec: Spec) -> Any:
 
 
 def make_mark_impact(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, pairs, bodies, motion, params) -> rows` of the impact.
+    """Return `kernel(state, count, params) -> rows` of the impact.
 
     All others wait.
     """
@@ -88,14 +89,15 @@ def _make_together(spec: Spec) -> Any:
 
     hands_on = kernel(hands_on, spec)
 
-    def mark_impact(contacts, count, pairs, bodies, motion, params):
+    def mark_impact(state, count, params):
+        contacts, pairs, bodies, motion = state.contacts, state.pairs, state.bodies, state.motion
         slop = params.slop
         for i in range(motion.shape[0]):
             motion[i].in_impact = 0
         if turns:
             for c in range(count):
                 if contacts[c].located == MEETS:
-                    meet_flush(contacts, count, pairs, bodies, motion, contacts[c], params)
+                    meet_flush(state, count, contacts[c], params)
         for c in range(count):
             contact = contacts[c]
             takes_part = contact.phi <= TOUCHING or (contact.phi <= slop and contact.waits == 0)

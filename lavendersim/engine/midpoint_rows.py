@@ -37,9 +37,9 @@ FORCED, TURNED = 0.05, 0.5
 BEFORE = 2.5
 # It may have a gap of this share of what the turning of its surfaces moves them by.
 AJAR = 0.25
-# Ends of a joint that was not held at the middle before, and that part by more than this share of
-# what their turning parts them by half a step later, are torn: their mean velocity in the step is
-# half of that, not none [-].
+# Ends of a joint that did not stay together at the last middle, and that part by more than this
+# share of what their turning parts them by half a step later, are torn: their mean velocity in the
+# step is half of that, not none [-].
 TORN = 0.5
 # It slides throughout when the slip is so many times its change.
 SLIDES = 2.0
@@ -181,28 +181,28 @@ def make_begin_slip(spec: Spec) -> Any:
     return kernel(begin_slip, spec)
 
 
-def make_is_held(spec: Spec) -> Any:
-    """Return `kernel(contact, motion) -> whether` its bodies that move were `held` before."""
+def make_is_unparted(spec: Spec) -> Any:
+    """Return `kernel(contact, motion) -> whether` its bodies that move were `unparted` before."""
 
-    def is_held(contact, motion):
-        held = True
+    def is_unparted(contact, motion):
+        unparted = True
         if contact.inv_m_a > 0.0:
-            held = motion[contact.a].held == 1
+            unparted = motion[contact.a].unparted == 1
         if contact.inv_m_b > 0.0:
-            held = held and motion[contact.b].held == 1
-        return held
+            unparted = unparted and motion[contact.b].unparted == 1
+        return unparted
 
-    return kernel(is_held, spec)
+    return kernel(is_unparted, spec)
 
 
-def make_note_held(spec: Spec) -> Any:
-    """Return `kernel(motion, midway)`, of a part that took time: whose joints the middle held."""
+def make_note_unparted(spec: Spec) -> Any:
+    """Return `kernel(motion, midway)`, of a part that took time: whose joints stay together."""
 
-    def note_held(motion, midway):
+    def note_unparted(motion, midway):
         for i in range(motion.shape[0]):
-            motion[i].held = motion[i].midway if midway else 0
+            motion[i].unparted = motion[i].midway if midway else 0
 
-    return kernel(note_held, spec)
+    return kernel(note_unparted, spec)
 
 
 def make_resist(spec: Spec) -> Any:
@@ -245,7 +245,7 @@ def make_shift(spec: Spec) -> Any:
     joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)
-    is_held: Any = make_is_held(spec) if bilateral else None
+    is_unparted: Any = make_is_unparted(spec) if bilateral else None
 
     def shift(contact, lead, motion, params):
         la, lb = lead[contact.a], lead[contact.b]
@@ -269,7 +269,7 @@ def make_shift(spec: Spec) -> Any:
                 if contact.torn < 0:
                     ahead = length(joint_velocity(contact, la, lb))
                     contact.torn = 1 if length(parting) > TORN * ahead else 0
-                    if is_held(contact, motion):
+                    if is_unparted(contact, motion):
                         contact.torn = 0
                 if contact.torn == 1:
                     contact.target -= dot(Vec3(contact.nx, contact.ny, contact.nz), parting)

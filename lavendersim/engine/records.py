@@ -104,7 +104,7 @@ MOTION: Final[list[Field]] = [
     ("jumps", I8),  # 1: a contact that does not last pushes it, or what jumps (`midpoint_jumps`)
     ("carried", I8),  # by a contact. 0: free; else AFTERWARDS, ALWAYS, LASTING: see `integrate`
     ("midway", I8),  # 1: its velocity was changed by impulses at the middle of the step
-    ("held", I8),  # 1: in the last part that took time its joints held at the middle
+    ("unparted", I8),  # 1: its joints stayed together at the last middle
     ("mean_x", F8),  # mean spin of the step, where midway is 1 [rad/s]
     ("mean_y", F8),
     ("mean_z", F8),

@@ -19,7 +19,7 @@ from .effects import has_hook, made_by, made_once
 from .integrate import keeps_motion, make_classify
 from .joint_turn import make_joint_velocity
 from .midpoint_passes import make_midpoint_passes, make_stand_up
-from .midpoint_rows import make_is_moving, make_lasting, make_note_held
+from .midpoint_rows import make_is_moving, make_lasting, make_note_unparted
 from .overlooked_points import make_look_over
 from .records import INSTANT
 from .row_terms import make_acts, row_terms
@@ -80,7 +80,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     bilateral = row_terms(spec).bilateral
     joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
     joined = bilateral and centred
-    note_held: Any = make_note_held(spec) if joined else None
+    note_unparted: Any = make_note_unparted(spec) if joined else None
     midpoint_passes: Any = None
     if centred:
         midpoint_passes = make_midpoint_passes(spec, append_contact, preload, solve)
@@ -164,7 +164,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                 midway = midpoint_passes(state, count, workspace, params, counters, log)
             if joined:
                 if lasts:
-                    note_held(motion, midway)
+                    note_unparted(motion, midway)
         return midway
 
     solve_part = kernel(solve_part, spec)

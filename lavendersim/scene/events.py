@@ -157,7 +157,7 @@ def write_velocity(
     """Write what is given of a body's velocity [m/s] and spin [rad/s]."""
     row = engine.velocities[index]
     if index < len(engine.state.motion):  # none where a step does not ask for it
-        engine.state.motion["held"][index] = 0  # its joints may be torn
+        engine.state.motion["unparted"][index] = 0  # its joints may be torn
     if velocity is not None:
         row["vx"], row["vy"], row["vz"] = velocity
     if angular_velocity is not None and step_terms(engine.spec).turns:

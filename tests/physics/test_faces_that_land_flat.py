@@ -5,9 +5,9 @@ all of its points in one instant: one impact at e = 0. Of pushes J >= 0 at the c
 at distances d from the edge, that take all of the momentum,
     sum J = m w s,   sum J d = (I + m (s^2 + h^2)) w
 s: distance of the centre of mass from the edge along the face, h: its height, I: about the axis of
-the turn; friction has to take m w h of sum J, and to hold the edge before. Where there are some, rest is what
-the laws of the impact have: it minimises the energy among velocities that leave the floor alone,
-which is what a plastic impact does, and friction has no slip to act against.
+the turn; friction has to take m w h of sum J, and to hold the edge before. Where there are some,
+rest is what the laws of the impact have: it minimises the energy among velocities that leave the
+floor alone, which is what a plastic impact does, and friction has no slip to act against.
 """
 
 from __future__ import annotations

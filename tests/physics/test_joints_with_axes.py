@@ -109,7 +109,7 @@ def held(rate: int = 240) -> str:
 def ran() -> dict[str, States]:
     texts = {f"pendulum {r}": pendulum(r) for r in RATES}
     texts |= {f"{k} {r}": flight(k, r) for k in ("hinge", "fixed", "slider") for r in RATES}
-    texts |= {"linkage": linkage(60), "held": held()}
+    texts |= {"linkage": linkage(60), "unparted": held()}
     return run_scenes(texts)
 
 
@@ -217,17 +217,17 @@ def test_linkage_of_hinges_turns_evenly_though_its_rows_are_too_many(
 
 
 def test_a_fixed_joint_carries_weight_and_moment_of_a_cantilever(ran: dict[str, States]) -> None:
-    force, torque = load(ran["held"], 1)
+    force, torque = load(ran["unparted"], 1)
     # 1e-9 m/s of a step's g/240, of 2 kg, at 0.5 m.
     np.testing.assert_allclose(abs(force), [0, 0, 2.0 * GRAVITY], atol=1e-6)
     np.testing.assert_allclose(abs(torque), [0, 2.0 * GRAVITY * 0.5, 0], atol=1e-6)
 
 
 def test_a_door_on_two_hinges_turns_evenly_and_does_not_sag(ran: dict[str, States]) -> None:
-    place, _, spin = ran["held"].of("door")
+    place, _, spin = ran["unparted"].of("door")
     assert abs(place[:, 2]).max() <= 1e-11
     np.testing.assert_allclose(spin, [[0, 0, 1.0]] * len(spin), atol=1e-9 * 120)
-    forces = [load(ran["held"], number)[0] for number in (2, 3)]
+    forces = [load(ran["unparted"], number)[0] for number in (2, 3)]
     total = np.sum(forces, axis=0)
     # Its weight, and what keeps its centre on its circle: 20 kg, w^2 r = 0.5 m/s^2.
     assert abs(total[2]) == pytest.approx(20.0 * GRAVITY, rel=1e-6)
@@ -235,7 +235,7 @@ def test_a_door_on_two_hinges_turns_evenly_and_does_not_sag(ran: dict[str, State
 
 
 def test_a_block_slides_down_its_slider_as_down_a_smooth_slope(ran: dict[str, States]) -> None:
-    states = ran["held"]
+    states = ran["unparted"]
     place, _, spin = states.of("block")
     fallen = 0.5 * GRAVITY * math.sin(SLOPE) * states.time**2
     down = np.array([math.cos(SLOPE), 0.0, -math.sin(SLOPE)])

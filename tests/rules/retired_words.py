@@ -66,7 +66,7 @@ RETIRED = {
     "on purpose": Retired(
         r"\bmistakes? (made )?on purpose\b|\bknown mistake\b", "deliberate error"
     ),
-    "held": Retired(
+    "unparted": Retired(
         r"\bheld\b",
         "compared with, checked against; kept, given for a round; waiting; met",
         tuple(place for place in EVERYWHERE if place not in ("configs", "tests")),

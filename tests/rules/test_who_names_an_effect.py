@@ -50,6 +50,7 @@ ELSEWHERE = {
         "engine/effects/rope.py": "a rope has one of its own, by the same name",
         "scene/ropes.py": "a rope has one of its own, by the same name",
         "engine/foreseen_impacts.py": FIELD,
+        "engine/impact_rows.py": FIELD,
         "engine/overlooked_points.py": FIELD,
     },
     "speculative": {

@@ -117,9 +117,7 @@ class Hooks:
     is_drawn: Maker | None = None  # (contact, pair, params) -> whether its bodies draw together
     restitution_at: Maker | None = None  # (e, row, speed) -> e at an approach speed
     note_slip: Maker | None = None  # (contact, va, vb): the slip before the solve
-    mark_impact: Maker | None = (
-        None  # (contacts, count, pairs, bodies, motion, params) -> rows of it
-    )
+    mark_impact: Maker | None = None  # (state, count, params) -> rows of the impact
     order_impacts: Maker | None = None  # (state, count, workspace, params, counters): see there
     first_stop: Maker | None = None  # (state, count, params, counters) -> when sliding stops [s]
     note_rate: Maker | None = None  # (body, velocity, motion, dt), once a part is solved

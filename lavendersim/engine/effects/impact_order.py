@@ -204,7 +204,7 @@ def make_order(spec: Spec) -> Any:
             return count, until_stop(state, count, left, params, counters)
         rows = touching
         if meets:
-            rows = mark_impact(contacts, count, state.pairs, bodies, motion, params)
+            rows = mark_impact(state, count, params)
         counters.spent += 1 + rows + count // CANDIDATES_A_ROW
         if counters.spent > work or (meets and rows > MOST_ROWS):
             counters.unordered = 1

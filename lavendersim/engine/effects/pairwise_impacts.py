@@ -34,7 +34,7 @@ def decide(facts: Facts) -> Decision:
 
 
 def make_mark_impact(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, pairs, bodies, motion, params) -> rows` of the impact.
+    """Return `kernel(state, count, params) -> rows` of the impact.
 
     They are those between the two bodies that approach fastest, of all that meet.
     """
@@ -46,7 +46,8 @@ def make_mark_impact(spec: Spec) -> Any:
     turns = step_terms(spec).turns
     meet_flush: Any = make_meet_flush(spec) if turns else None
 
-    def mark_pairs(contacts, count, pairs, bodies, motion, params):
+    def mark_pairs(state, count, params):
+        contacts, pairs, bodies, motion = state.contacts, state.pairs, state.bodies, state.motion
         fastest = 0.0
         for c in range(count):
             if contacts[c].located == MEETS:
@@ -59,7 +60,7 @@ def make_mark_impact(spec: Spec) -> Any:
             if first.located != MEETS or first.rate > fastest * (1.0 - EQUAL):
                 continue
             if turns:
-                meet_flush(contacts, count, pairs, bodies, motion, first, params)
+                meet_flush(state, count, first, params)
             for d in range(count):
                 contact = contacts[d]
                 if contact.a != first.a or contact.b != first.b or contact.waits == 0:

@@ -37,8 +37,13 @@ def marked(contacts, bodies, spec: Spec = SPEC, pairs=(), spin: float = 0.0):
     if spin:
         motion["wy"], motion["vx"] = spin, 1.0
     mark = interpreted(make_mark_impact(spec))
-    rows, moving = records(contacts), records(motion)
-    count = mark(rows, len(contacts), records(pairs), records(bodies), moving, PARAMS)
+    state = SimpleNamespace(
+        contacts=records(contacts),
+        pairs=records(pairs),
+        bodies=records(bodies),
+        motion=records(motion),
+    )
+    count = mark(state, len(contacts), PARAMS)
     taking = set(np.flatnonzero(contacts["waits"] == 0))
     assert count == len(taking)
     return taking, set(np.flatnonzero(motion["in_impact"]))

@@ -25,7 +25,10 @@ def marked(contacts: np.ndarray, compliance=0.0) -> set[int]:
     pairs["compliance"] = compliance
     motion = records(np.zeros(8, dtype(MOTION)))
     mark = interpreted(make_mark_impact(SPEC))
-    rows = mark(records(contacts), len(contacts), records(pairs), records(bodies), motion, PARAMS)
+    state = SimpleNamespace(
+        contacts=records(contacts), pairs=records(pairs), bodies=records(bodies), motion=motion
+    )
+    rows = mark(state, len(contacts), PARAMS)
     taking = set(np.flatnonzero(contacts["waits"] == 0).tolist())
     assert rows == len(taking)
     return taking
