@@ -16,8 +16,9 @@ from .step_terms import step_terms
 # What two bodies that turn close of their last gaps in one instant, in slops. A face that comes
 # down about an edge which lies a slop deep meets with the points next to that edge before others.
 FLUSH = 10.0
-# It meets by a share of their speed at least: what lies there and is shaken brings nothing along.
-SHAKEN = 0.01
+# What moves by less than this share of the other's speed lies there and is shaken: as it meets it
+# brings nothing along, as it parts it is pressed by what meets.
+SHAKEN = 0.02
 
 
 def make_meet_flush(spec: Spec) -> Any:
@@ -58,7 +59,7 @@ def make_meet_flush(spec: Spec) -> Any:
                     contact.phi = TOUCHING
             if contact.rate > 0.0 and contact.phi <= params.slop and e == 0.0:
                 bent = gap_acceleration(contact, bodies, motion) * params.timestep
-                if contact.rate <= bent:
+                if contact.rate <= min(bent, -SHAKEN * first.rate):
                     contact.rate = 0.0
 
     return kernel(meet_flush, spec)

@@ -25,7 +25,15 @@ NOT_YET = sorted((HERE / "not_yet").glob("*.yaml"))
 ALONE = {
     *("ball_between_walls", "ball_on_a_carpet", "ball_over_a_kerb", "ball_that_spins", "bank_shot"),
     *("block_on_a_catapult", "bouncing_box", "bulldozer", "bungee", "can_and_pipe"),
-    *("cart_on_a_slope", "cut_shot", "damped_spring", "drawer", "hammer_throw", "heap_of_balls"),
+    *(
+        "cart_on_a_slope",
+        "cut_shot",
+        "damped_spring",
+        "drawer",
+        "hammer_throw",
+        "heap_of_balls",
+        "jenga_push",
+    ),
     *("lift_going_up", "parachute", "precessing_wheel", "pushed_door", "ragdoll_of_balls"),
     *("seesaw", "stop_shot", "three_logs", "tower_of_cans", "towing", "two_pushed_together"),
     *("tyre_down_stairs", "weight_on_a_spring", "wrecking_ball_on_a_rod"),
