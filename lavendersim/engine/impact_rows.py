@@ -24,9 +24,9 @@ SHAKEN = 0.02
 def make_meet_flush(spec: Spec) -> Any:
     """Return `kernel(state, count, first, params)`.
 
-    What else of its two bodies meets in one instant with `first`, a row that meets. What is as good
-    as flush counts as met. What lies there, throws nothing back and parts by what going round bends
-    of a step counts as neither meeting nor parting: the impact may press on it.
+    What else of its two bodies meets in one instant with `first`, a row that meets, where nothing is
+    thrown back. What is as good as flush counts as met. What lies there and parts by what going
+    round bends of a step counts as neither meeting nor parting: the impact may press on it.
     """
     gap_acceleration, rebounds = make_gap_acceleration(spec), step_terms(spec).rebounds
     approach = make_approach(spec)
@@ -52,12 +52,14 @@ def make_meet_flush(spec: Spec) -> Any:
                 continue
             if rebounds:
                 e = pairs[contact.pair].restitution
+            if e > 0.0:  # it leaves point by point
+                continue
             if contact.located == FAR and contact.phi <= FLUSH * params.slop:
                 contact.rate = approach(contact, bodies, motion)  # too little is left to get there
             if first.rate < SHAKEN * contact.rate:
                 if TOUCHING < contact.phi <= FLUSH * params.slop and contact.rate < 0.0:
                     contact.phi = TOUCHING
-            if contact.rate > 0.0 and contact.phi <= params.slop and e == 0.0:
+            if contact.rate > 0.0 and contact.phi <= params.slop:
                 bent = gap_acceleration(contact, bodies, motion) * params.timestep
                 if contact.rate <= min(bent, -SHAKEN * first.rate):
                     contact.rate = 0.0

@@ -125,9 +125,10 @@ def test_points_of_a_face_meet_together_and_the_edge_it_turns_about_holds(e: flo
     contacts["rate"] = [0.5 * bent, -1.0, -3.0, -3.0, 2.0 * bent, -3.0]
     contacts["waits"] = [1, 0, 1, 1, 1, 1]
     taking, _ = marked(contacts, bodies, TURNING, pairs, spin)
-    # What may have bounced stays out; so do points that are not flush, and those of other bodies.
-    assert taking == ({1, 2} if e > 0.0 else {0, 1, 2})
-    assert contacts["phi"][2] <= 1e-9  # its gap counts as closed: an instant would not close it
+    # What rebounds leaves point by point; points that are not flush and those of others stay out.
+    assert taking == ({1} if e > 0.0 else {0, 1, 2})
+    if e == 0.0:
+        assert contacts["phi"][2] <= 1e-9  # its gap counts as closed: an instant would not close it
 
 
 @pytest.mark.parametrize("waits", [[0, 0, 0, 0], [1, 0, 1, 0], [0, 1, 1, 1], [1, 1, 1, 1]])
