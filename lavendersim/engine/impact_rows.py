@@ -24,8 +24,8 @@ SHAKEN = 0.02
 def make_meet_flush(spec: Spec) -> Any:
     """Return `kernel(state, count, first, params)`.
 
-    What else of its two bodies meets in one instant with `first`, a row that meets, where nothing is
-    thrown back. What is as good as flush counts as met. What lies there and parts by what going
+    What else of its two bodies meets in one instant with `first`, a row that meets, where nothing
+    is thrown back. What is as good as flush counts as met. What lies there and parts by what going
     round bends of a step counts as neither meeting nor parting: the impact may press on it.
     """
     gap_acceleration, rebounds = make_gap_acceleration(spec), step_terms(spec).rebounds

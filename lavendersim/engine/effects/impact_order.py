@@ -12,8 +12,8 @@ Slow meetings are no impacts (`foreseen_impacts`): with a rebound that would end
 steps, or without rebound below SLOW times what forces change in a step (GLANCING of that across a
 gap, where the path of the contact bends). They are contacts of the motion (`impact_time`). An
 impact takes along what touches and does not part, and of its two bodies what is flush with it by
-ten slops, as points of a face that lands without rebound (`impact_rows`); nothing else. One may have
-MOST_ROWS rows of contacts, and a step has WORK of them to spend on its parts, or REBOUND where
+ten slops, as points of a face that lands without rebound (`impact_rows`); nothing else. One may
+have MOST_ROWS rows of contacts, and a step has WORK of them to spend on its parts, or REBOUND where
 something rebounds: there impacts without order may win energy. The rest of one that has spent them
 or meets a larger impact, or whose bodies overlap, is made in one part: its impacts at their times
 but without their order (/step: unordered).
