@@ -210,11 +210,20 @@ def make_resist(spec: Spec) -> Any:
 
     Of rows solved at the middle. Where friction has turned since the solve at the start it may push
     along the slip that the step began with, and would do work on the mean: lambda_t . (w + s_0)/2.
-    There that slip counts, too, as in `begin_slip`. None without friction.
+    There that slip counts, too, as in `begin_slip`; not of what is driven, which does work on what
+    rides on it. None without friction.
     """
     if not row_terms(spec).frictional:
         return None
-    slip_velocity = make_slip_velocity(spec)
+    slip_velocity, turns = make_slip_velocity(spec), step_terms(spec).turns
+
+    def is_driven(inv_m, v):
+        moves = v.vx != 0.0 or v.vy != 0.0 or v.vz != 0.0
+        if turns:
+            moves = moves or v.wx != 0.0 or v.wy != 0.0 or v.wz != 0.0
+        return inv_m == 0.0 and moves
+
+    is_driven = kernel(is_driven, spec)
 
     def resist(contacts, count, velocities):
         more = False
@@ -222,8 +231,11 @@ def make_resist(spec: Spec) -> Any:
             contact = contacts[c]
             if contact.lasts == 0 or contact.slides != 0 or contact.lambda_n == 0.0:
                 continue
+            va, vb = velocities[contact.a], velocities[contact.b]
+            if is_driven(contact.inv_m_a, va) or is_driven(contact.inv_m_b, vb):
+                continue
             one, two = contact.lambda_1, contact.lambda_2
-            _, v_1, v_2 = slip_velocity(contact, velocities[contact.a], velocities[contact.b])
+            _, v_1, v_2 = slip_velocity(contact, va, vb)
             x, y, z = contact.begin_x, contact.begin_y, contact.begin_z
             s_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
             s_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z

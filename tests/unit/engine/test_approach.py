@@ -130,7 +130,7 @@ def test_the_gap_of_two_balls_bends_no_faster_than_the_bound() -> None:
 
 
 @pytest.mark.parametrize(
-    ("phi", "rate", "unparted"), [(0.0, 0.0, True), (0.01, 0.0, False), (0.0, -0.1, False)]
+    ("phi", "rate", "held"), [(0.0, 0.0, True), (0.01, 0.0, False), (0.0, -0.1, False)]
 )
 def test_what_touches_is_expected_to_accelerate_as_before(phi, rate, held, rng) -> None:
     """What is held by its contacts gets a dt of the last part, all else what forces give."""
