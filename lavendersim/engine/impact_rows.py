@@ -21,6 +21,29 @@ FLUSH = 10.0
 SHAKEN = 0.02
 
 
+def _make_is_plastic(spec: Spec) -> Any:
+    """Return `kernel(contact, pair) -> whether` it is of rigid surfaces that throw nothing back."""
+    springs, ropes = row_terms(spec).elastic, row_terms(spec).taut
+    bilateral, stopped = row_terms(spec).bilateral, row_terms(spec).stopped
+    rebounds = step_terms(spec).rebounds
+
+    def is_plastic(contact, pair):
+        plastic = True
+        if rebounds:
+            plastic = pair.restitution == 0.0
+        if springs:
+            plastic = plastic and pair.compliance == 0.0
+        if ropes:
+            plastic = plastic and contact.span == 0.0
+        if bilateral:
+            plastic = plastic and contact.bilateral == 0
+        if stopped:
+            plastic = plastic and contact.stop == 0
+        return plastic
+
+    return kernel(is_plastic, spec)
+
+
 def make_meet_flush(spec: Spec) -> Any:
     """Return `kernel(state, count, first, params)`.
 
@@ -28,38 +51,24 @@ def make_meet_flush(spec: Spec) -> Any:
     is thrown back. What is as good as flush counts as met. What lies there and parts by what going
     round bends of a step counts as neither meeting nor parting: the impact may press on it.
     """
-    gap_acceleration, rebounds = make_gap_acceleration(spec), step_terms(spec).rebounds
-    approach = make_approach(spec)
-    springs, ropes = row_terms(spec).elastic, row_terms(spec).taut
-    bilateral, stopped = row_terms(spec).bilateral, row_terms(spec).stopped
+    gap_acceleration, approach = make_gap_acceleration(spec), make_approach(spec)
+    is_plastic = _make_is_plastic(spec)
 
     def meet_flush(state, count, first, params):
         contacts, pairs, bodies, motion = state.contacts, state.pairs, state.bodies, state.motion
+        flush = FLUSH * params.slop
         for c in range(count):
             contact = contacts[c]
-            if contact.a != first.a or contact.b != first.b:
+            if contact.a != first.a or contact.b != first.b or contact.phi > flush:
                 continue
-            of_surfaces, e = True, 0.0
-            if springs:
-                of_surfaces = pairs[contact.pair].compliance == 0.0
-            if ropes:
-                of_surfaces = of_surfaces and contact.span == 0.0
-            if bilateral:
-                of_surfaces = of_surfaces and contact.bilateral == 0
-            if stopped:
-                of_surfaces = of_surfaces and contact.stop == 0
-            if not of_surfaces:
+            if not is_plastic(contact, pairs[contact.pair]):
                 continue
-            if rebounds:
-                e = pairs[contact.pair].restitution
-            if e > 0.0:  # it leaves point by point
-                continue
-            if contact.located == FAR and contact.phi <= FLUSH * params.slop:
-                contact.rate = approach(contact, bodies, motion)  # too little is left to get there
-            if first.rate < SHAKEN * contact.rate:
-                if TOUCHING < contact.phi <= FLUSH * params.slop and contact.rate < 0.0:
+            if contact.located == FAR:  # too little is left of the step to get there
+                contact.rate = approach(contact, bodies, motion)
+            if contact.rate < 0.0 and contact.phi > TOUCHING:
+                if first.rate < SHAKEN * contact.rate:
                     contact.phi = TOUCHING
-            if contact.rate > 0.0 and contact.phi <= params.slop:
+            elif contact.rate > 0.0 and contact.phi <= params.slop:
                 bent = gap_acceleration(contact, bodies, motion) * params.timestep
                 if contact.rate <= min(bent, -SHAKEN * first.rate):
                     contact.rate = 0.0

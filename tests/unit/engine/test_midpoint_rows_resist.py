@@ -56,3 +56,11 @@ def test_what_does_not_last_or_push_or_slides_already_has_no_slip_to_count() -> 
     for values in ({"lasts": 0}, {"lambda_n": 0.0}, {"slides": 2}, {"slides": 1}):
         assert not resists((0.1, 0.0), (0.0, 0.0), lambda_1=0.2, lambda_2=0.0, **values)
     assert midpoint_rows.make_resist(STRAIGHT) is None
+
+
+def test_the_slip_of_what_is_driven_counts_for_nothing() -> None:
+    """A table that is moved does work on what rides on it; a floor that stands does none."""
+    for side, other in ("ab", "ba"):
+        driven = {f"inv_m_{side}": 0.0, f"inv_m_{other}": 1.0}
+        assert not resists((0.1, 0.0), (0.01, 0.0), lambda_1=0.2, lambda_2=0.0, **driven)
+        assert resists((0.1, 0.0), (0.0, 0.0), lambda_1=0.2, lambda_2=0.0, **driven)  # all stands
