@@ -17,13 +17,12 @@ from __future__ import annotations
 from typing import Any
 
 from .approach import CREEP, FAR, make_rate, make_slowest
-from .collide.rope import ROPE
-from .collide.shapes import make_radius, make_support
+from .collide.shape_kernels import make_radius, make_support
 from .compile import kernel
 from .contact_lists import make_list_contacts
 from .effects import has_hook
 from .impact_rows import FLUSH, make_keep_present
-from .records import PLANE, SPHERE, TOUCHING
+from .records import PLANE, ROPE, SPHERE, TOUCHING
 from .row_terms import row_terms
 from .spec import Spec
 from .vectors import Vec3, dot, minus, plus, position

@@ -21,12 +21,6 @@ WORTH, VISIT = 3000.0, 50.0
 STEPS = 24.0
 
 
-def projects_joints(spec: Spec) -> bool:
-    """Whether an engine has it: torques of contacts have no part in a projection."""
-    terms = row_terms(spec)
-    return terms.bilateral and spec.has("newton") and not (terms.torsional or terms.rolling)
-
-
 def make_project_joints(spec: Spec) -> Any:
     """Return `kernel(system, workspace, tolerance)`: pushes go on to where ends are together.
 

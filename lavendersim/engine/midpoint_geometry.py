@@ -12,11 +12,10 @@ from typing import Any
 from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import UNBOUNDED, put_normal
-from .collide.rope import ROPE
 from .compile import inner, kernel
 from .effects import made_once
 from .joint_turn import put_mean_ends
-from .records import BOX, HULL, PLANE, TOUCHING
+from .records import BOX, HULL, PLANE, ROPE, TOUCHING
 from .rotation import half_turn, is_round
 from .row_terms import row_terms
 from .spec import Spec

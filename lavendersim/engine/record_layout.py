@@ -20,6 +20,7 @@ from .records import (
     BODY,
     CONTACT,
     DRIVE,
+    I8,
     KNOT,
     LINK,
     ORIENTED_BODY,
@@ -30,7 +31,6 @@ from .records import (
     Field,
     dtype,
 )
-from .solvers.catalogue import SOLVERS
 from .spec import Spec
 
 Record = Literal["body", "velocity", "pair", "contact", "link", "drive", "cache"]
@@ -57,6 +57,17 @@ def pair_dtype(spec: Spec) -> np.dtype:
     return dtype(PAIR, _of_effects(spec, "pair"))
 
 
+def template_dtype(surface: list[Field]) -> np.dtype:
+    """Return the record of `templates`: what pairs of two classes of bodies have in common.
+
+    templates[c, d], c and d `material` of the first and second row of a pair: `kind` of its
+    manifold, negative for classes that never touch, `swap` 1 where the kernel of that manifold
+    takes the second first, and the surface fields that go into the pair's row.
+    """
+    kind = [field for field in PAIR if field[0] == "kind"]
+    return dtype([*kind, ("swap", I8)], surface)
+
+
 @cache
 def contact_dtype(spec: Spec) -> np.dtype:
     """Return the record of a contact: geometry, what effects add, what the solver keeps of it."""
@@ -66,6 +77,8 @@ def contact_dtype(spec: Spec) -> np.dtype:
         if effect.fields.contact_with
         for field in effect.fields.contact_with(spec)
     ]
+    from .solvers.catalogue import SOLVERS  # late: numba
+
     solver = SOLVERS[spec.solver].contact_fields
     return dtype(CONTACT, _of_effects(spec, "contact"), dependent, solver)
 

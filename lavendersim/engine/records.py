@@ -29,6 +29,10 @@ HULL: Final = 5
 COMPOUND: Final = 6
 ROPE_END: Final = -1  # where a rope or a joint is on a body: `collide.rope`, `collide.joint`
 
+# PAIR.kind of what no two shapes are: those of shapes are 0 and more, those of joints less than -2.
+NO_PAIR: Final = -1  # two classes of bodies that never touch
+ROPE: Final = -2  # the ends of a rope
+
 # Surfaces closer than this touch [m]. Bodies placed face to face leave gaps of round-off size
 # (1e-16 at 1 m, 1e-11 at 100 km); without it one corner of a box rests while another falls a step.
 # Far above: bodies would hover visibly before they touch.

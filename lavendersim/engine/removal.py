@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .collide.rope import ROPE
+from .records import NO_PAIR, ROPE
 
-NO_PAIR = -1  # `kind` of two classes of bodies that never touch
 # What says of a body that it moves, or may again.
 _MOVES = (
     *("inv_m", "inv_ix", "inv_iy", "inv_iz", "kinematic", "asleep"),

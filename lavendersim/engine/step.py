@@ -20,7 +20,8 @@ from lavendersim.garbage import uncollected
 
 from .approach import NEVER, make_note_acceleration
 from .collide import narrow_phase
-from .collide.iteration_limits import forget_limits, has_limits, make_count_limits
+from .collide.iteration_limits import has_limits
+from .collide.limit_counts import forget_limits, make_count_limits
 from .compile import chain, kernel, naming
 from .effects import BY_NAME, has_hook, made_by, made_once
 from .integrate import (

@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from lavendersim.cell import CellConfig, CellScene, Surface
-from lavendersim.engine.collide.joint import DIRECTIONS, FIRST_ROW
 from lavendersim.engine.effects import PairFacts, holding, turned_by_joints
 from lavendersim.engine.effects.joint_models import (
     ALONG,
@@ -205,6 +204,8 @@ def with_joints(
     """Return the table of pairs with those of joints before it; first: row of the first end."""
     if not row_terms(spec).bilateral or first == len(bodies):
         return pairs
+    from lavendersim.engine.collide.joint import DIRECTIONS, FIRST_ROW  # late: numba
+
     joints_by_number = list(holding(config.scene).values())
     table_rows: list[tuple[int, int, int]] = []
     driven: dict[int, tuple[float, float]] = {}  # speed and most of motors, by rows of the table

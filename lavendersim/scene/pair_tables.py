@@ -14,11 +14,9 @@ import numpy as np
 from lavendersim.cell import CellBody, Surface
 from lavendersim.cell.mixing import mixed
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.collide.broad.broad_phase import template_dtype
-from lavendersim.engine.collide.rope import ROPE
 from lavendersim.engine.effects import has_hook, surface_fields
-from lavendersim.engine.record_layout import allocate_pairs
-from lavendersim.engine.removal import NO_PAIR
+from lavendersim.engine.record_layout import allocate_pairs, template_dtype
+from lavendersim.engine.records import NO_PAIR, ROPE
 from lavendersim.engine.spec import Spec
 
 from .candidates import candidate_pairs

@@ -10,11 +10,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from lavendersim.cell import CellConfig, CellScene, Surface
-from lavendersim.engine.collide.rope import ROPE
 from lavendersim.engine.effects import PairFacts
 from lavendersim.engine.effects.rope import Rope, pulling, turned
 from lavendersim.engine.record_layout import allocate_pairs
-from lavendersim.engine.records import ROPE_END
+from lavendersim.engine.records import ROPE, ROPE_END
 from lavendersim.engine.row_terms import row_terms
 from lavendersim.engine.spec import Spec
 from lavendersim.geometry.rotations import rotation_matrix

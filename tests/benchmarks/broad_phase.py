@@ -27,6 +27,7 @@ import numpy as np
 from lavendersim.engine.collide.broad import broad_phase
 from lavendersim.engine.compile import compiling
 from lavendersim.engine.effects import BY_NAME
+from lavendersim.engine.record_layout import template_dtype
 from lavendersim.engine.records import (
     ANGULAR_VELOCITY,
     BODY,
@@ -64,7 +65,7 @@ class Cloud:
         self.direction = rng.normal(size=(3, count))
         self.direction /= np.linalg.norm(self.direction, axis=0)
         self.phase = rng.uniform(0.0, 2.0 * np.pi, count)
-        self.templates = np.zeros((1, 1), broad_phase.template_dtype(SURFACE))
+        self.templates = np.zeros((1, 1), template_dtype(SURFACE))
         self.parameters = np.zeros(1, dtype(PARAMETERS))
         self.parameters["dt"], self.parameters["gz"] = DT, -9.81
         self.make_room(16)

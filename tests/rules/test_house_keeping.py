@@ -119,7 +119,7 @@ def test_every_shape_of_a_config_has_kernels() -> None:
 
 def test_every_shape_pair_is_listed() -> None:
     """Pairs without a closed form share a file, with a plane or without; others have their own."""
-    files = {name: pair.make.__module__.rpartition(".")[2] for name, pair in SHAPE_PAIRS.items()}
+    files = {name: pair.file for name, pair in SHAPE_PAIRS.items()}
     shared = {"convex", "convex_plane"}
     assert set(files.values()) | shared == stems_of("collide/pairs")
     assert all(name == file for name, file in files.items() if file not in shared)

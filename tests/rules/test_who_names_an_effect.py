@@ -68,7 +68,7 @@ ELSEWHERE = {
 ASKED = {
     "newton": {
         "solvers/adaptive": "its rounds are a part of this solver",
-        "joint_projection": "pushes that joints share are found by the same method",
+        "effects/projection": "pushes that joints share are found by the same method",
         "effects/least_norm": "chooses among what it leaves undetermined, by its factors",
     },
     "packed_sweeps": {"solvers/packed/late": "from which contact on this solver has them"},

@@ -17,12 +17,12 @@ from math import atan2, cos, sin, sqrt
 from typing import Any
 
 from ..compile import inner, kernel
+from ..records import ROPE
 from ..row_terms import row_terms
 from ..spec import Spec
 from ..vectors import Vec3, dot, minus, plus, plus_scaled, position, scaled
 from .manifold.point import place, put_manifold_normal
 from .records import put_arms
-from .rope import ROPE
 
 # `kind` of the pair of a row, less than a rope's: FIRST_ROW - (DIRECTIONS * which row + direction).
 FIRST_ROW = ROPE - 1

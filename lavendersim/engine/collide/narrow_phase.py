@@ -10,7 +10,7 @@ from typing import Any
 from ..compile import inner, kernel
 from ..effects import has_hook, made_once
 from ..overlooked_points import make_note_left_out
-from ..records import TOUCHING
+from ..records import ROPE, TOUCHING
 from ..row_terms import row_terms
 from ..spec import Spec
 from ..step_terms import step_terms
@@ -19,7 +19,7 @@ from .joint import is_couple, is_motor, is_stop, make_joint, put_ends
 from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
 from .pairs import SHAPE_PAIRS
 from .records import put_normal
-from .rope import ROPE, make_rope
+from .rope import make_rope
 from .swept import make_is_fast, make_swept_manifold
 
 

@@ -9,12 +9,11 @@ the point is A's end, which stays where it is on its body.
 from __future__ import annotations
 
 from ..compile import kernel
+from ..records import ROPE
 from ..spec import Spec
 from ..vectors import Vec3, length, minus, position, scaled
 from .manifold.point import place, put_manifold_normal
 
-# `kind` of the pair of a rope's ends; those of shapes are 0 and more, no pair's is -1.
-ROPE = -2
 # Features of ropes, each with its number; no shape has as many.
 FIRST_ROPE = 1 << 48
 

@@ -1,30 +1,30 @@
 """What an engine knows of a pair of shapes: its name, the two shapes in order, its manifold kernel.
 
-A pair is one file in `pairs` that declares a `ShapePair`, and its name in `pairs.DECLARED`. Convex
-shapes that no file has together go by GJK and EPA (`pairs/convex.py`).
+A pair is one file in `pairs`, and a `ShapePair` in `pairs.DECLARED`. Convex shapes that no file has
+together go by GJK and EPA (`pairs/convex.py`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from importlib import import_module
 from typing import Any, NamedTuple
 
 from ..spec import Spec
 
 
 class ShapePair(NamedTuple):
-    """A pair of shapes that can touch.
-
-    make: `make(spec)` returns the kernel that writes the manifold of a body A of the first shape
-    and a body B of the second.
-    """
+    """A pair of shapes that can touch; to declare it loads no kernel."""
 
     name: str
     shapes: tuple[str, str]
-    make: Callable[[Spec], Any]
+    file: str  # of `pairs`, whose `make(spec)` returns its kernel
     # Whether its points hold the true distance at any margin: the time of impact then needs no GJK.
     closed_form: bool = False
     kind: int = -1  # number of the pair in PAIR.kind: its place among those declared
+
+    def make(self, spec: Spec) -> Any:
+        """Return the kernel that writes the manifold of A, of the first shape, and B."""
+        return import_module(f".pairs.{self.file}", __package__).make(spec)
 
 
 def numbered(*declared: ShapePair) -> dict[str, ShapePair]:

@@ -35,11 +35,11 @@ from ..records import PLANE, ROPE_END, TOUCHING
 from ..spec import Spec
 from ..vectors import Vec3, dot, plus_scaled, position
 from .convex.separation import make_separation
+from .iteration_limits import needs_separation
 from .manifold.point import copy_point, manifold_normal, place, put_manifold_normal
-from .pairs import SHAPE_PAIRS
 from .pairs.convex import NEAREST
 from .records import put_position
-from .shapes import make_radius
+from .shape_kernels import make_radius
 
 ANY_MARGIN = 1e100  # [m]
 # Newton's steps: a few for an impact; a graze halves what is left in each, and 1e-9 of 1 m is 30.
@@ -85,12 +85,6 @@ def between_cores(a, found, grown, n):
         a.y + 0.5 * (found.ay + found.by + grown * n.y),
         a.z + 0.5 * (found.az + found.bz + grown * n.z),
     )
-
-
-def needs_separation(spec: Spec) -> bool:
-    """Whether a pair has a gap that its points do not hold."""
-    pairs = [SHAPE_PAIRS[name] for name in spec.shape_pairs]
-    return not all(pair.closed_form or "plane" in pair.shapes for pair in pairs)
 
 
 def make_gap(spec: Spec, manifold):

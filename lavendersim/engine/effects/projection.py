@@ -111,7 +111,7 @@ def make_mean_velocity(spec):
 def make(spec):
     """Return `kernel(system, motion, pseudo, workspace, params) -> sweeps made`."""
     from ..contact import make_normal_velocity
-    from ..joint_projection import make_project_joints, projects_joints
+    from ..joint_projection import make_project_joints
     from ..joint_turn import make_turned_apart
     from ..row_terms import row_terms
     from ..solvers.packed.apart import make_push_apart
@@ -270,9 +270,16 @@ def _make_push_apart(spec):
     return kernel(push_apart, spec)
 
 
+def projects_joints(spec: Spec) -> bool:
+    """Whether pushes of joints go by Newton's method: torques of contacts have no part in it."""
+    from ..row_terms import row_terms
+
+    terms = row_terms(spec)
+    return terms.bilateral and spec.has("newton") and not (terms.torsional or terms.rolling)
+
+
 def contact_fields(spec: Spec) -> list[Field]:
     """Return what keeps the rest of a row while Newton's method has it (`joint_projection`)."""
-    from ..joint_projection import projects_joints
     from ..row_terms import row_terms
 
     if not projects_joints(spec):

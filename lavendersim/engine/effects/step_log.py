@@ -17,7 +17,7 @@ def decide(facts: Facts) -> Decision:
 
 
 def _has_gjk(spec: Spec) -> bool:
-    from ..collide.iteration_limits import has_gjk  # late: it imports kernels
+    from ..collide.iteration_limits import has_gjk
 
     return has_gjk(spec)
 

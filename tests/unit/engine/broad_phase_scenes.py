@@ -19,6 +19,7 @@ from lavendersim.engine.collide.broad import broad_phase
 from lavendersim.engine.compile import compiling, kernel
 from lavendersim.engine.effects import BY_NAME
 from lavendersim.engine.kernel_cache import cached
+from lavendersim.engine.record_layout import template_dtype
 from lavendersim.engine.records import (
     ANGULAR_VELOCITY,
     BODY,
@@ -65,7 +66,7 @@ def broad_phase_kernel(*effects: str) -> Any:
 
 def templates() -> np.ndarray:
     """Return classes whose pairs differ in kind, order and friction."""
-    table = np.zeros((CLASSES, CLASSES), broad_phase.template_dtype(SURFACE))
+    table = np.zeros((CLASSES, CLASSES), template_dtype(SURFACE))
     for c, d in product(range(CLASSES), repeat=2):
         touch = GHOST not in (c, d) and max(c, d) > 0
         table[c, d]["kind"] = CLASSES * min(c, d) + max(c, d) if touch else -1

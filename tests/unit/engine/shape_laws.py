@@ -35,7 +35,10 @@ def core_of(solid_body: solids.Solid) -> solids.Solid:
 
 def check_support(shape: Shape, rng, hulls=(), **properties) -> None:
     """The support is a point of the core, as far along the direction as the core reaches."""
-    support, tables = interpreted(shape.make_support(Spec())), scratch_of(list(hulls)).hulls
+    support, tables = (
+        interpreted(shape.maker("make_support")(Spec())),
+        scratch_of(list(hulls)).hulls,
+    )
     for _ in range(40):
         a, direction = drawn(shape, rng, **properties), rng.normal(size=3)
         core = core_of(solid(a, hulls))
@@ -46,7 +49,7 @@ def check_support(shape: Shape, rng, hulls=(), **properties) -> None:
 
 def check_half_extents(shape: Shape, rng) -> None:
     """They are how far the body reaches along the world's axes."""
-    extents = interpreted(shape.make_half_extents(Spec()))
+    extents = interpreted(shape.maker("make_half_extents")(Spec()))
     for _ in range(40):
         a = drawn(shape, rng)
         expected = [solids.reach(solid(a), axis) for axis in np.eye(3)]

@@ -9,7 +9,8 @@ import pytest
 from interpreted import interpreted
 
 from lavendersim.engine import joint_projection
-from lavendersim.engine.joint_projection import make_project_joints, projects_joints
+from lavendersim.engine.effects.projection import projects_joints
+from lavendersim.engine.joint_projection import make_project_joints
 from lavendersim.engine.spec import Spec
 
 JOINED = ("compound", "frictionless_contact", "joint", "newton", "projection", "warm_start")

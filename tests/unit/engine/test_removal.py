@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.engine import removal
-from lavendersim.engine.records import ANGULAR_VELOCITY, BODY, LINK, PAIR, VELOCITY, dtype
+from lavendersim.engine.records import ANGULAR_VELOCITY, BODY, LINK, NO_PAIR, PAIR, VELOCITY, dtype
 
 OWN = [
     *[(name, "f8") for name in ("inv_ix", "inv_iy", "inv_iz", "fx", "ty")],
@@ -67,5 +67,5 @@ def test_its_class_touches_no_other_and_all_others_as_before() -> None:
     grown = removal.make_untouchable(made, templates, rows)
     assert grown.shape == (3, 3)
     np.testing.assert_array_equal(grown[:2, :2], templates)
-    assert set(grown["kind"][2]) == set(grown["kind"][:, 2]) == {removal.NO_PAIR}
+    assert set(grown["kind"][2]) == set(grown["kind"][:, 2]) == {NO_PAIR}
     assert made["material"].tolist() == [1, 2, 2, 4, 5]

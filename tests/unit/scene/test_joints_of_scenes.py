@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from lavendersim.engine.collide.joint import DIRECTIONS, FIRST_ROW
-from lavendersim.engine.collide.rope import ROPE
-from lavendersim.engine.records import ROPE_END
+from lavendersim.engine.records import ROPE, ROPE_END
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
 from lavendersim.scene.facts import facts_of

@@ -6,7 +6,7 @@ import numpy as np
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.record_layout import allocate_bodies
-from lavendersim.engine.removal import NO_PAIR
+from lavendersim.engine.records import NO_PAIR
 from lavendersim.engine.spec import Spec
 from lavendersim.scene.colliders import colliders
 from lavendersim.scene.pair_tables import PAIRS_PER_BODY, pair_tables

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lavendersim.engine.collide.rope import ROPE
-from lavendersim.engine.records import ROPE_END
+from lavendersim.engine.records import ROPE, ROPE_END
 from lavendersim.experiment import load_experiment_text
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of

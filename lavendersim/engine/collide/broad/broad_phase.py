@@ -16,7 +16,7 @@ import numpy as np
 
 from ...compile import kernel
 from ...effects import has_hook
-from ...records import COMPOUND, I8, PAIR, PLANE, ROPE_END, Field, dtype
+from ...records import COMPOUND, I8, PLANE, ROPE_END, Field, dtype
 from ...row_terms import row_terms
 from ...spec import Spec
 from ..rope import make_count_connections
@@ -96,17 +96,6 @@ def allocate_broad_phase(body_count: int, pair_capacity: int) -> BroadPhaseWork:
     )
 
 
-def template_dtype(surface: list[Field]) -> np.dtype:
-    """Return the record of `templates`: what pairs of two classes of bodies have in common.
-
-    templates[c, d], c and d `material` of the first and second row of a pair: `kind` of its
-    manifold, negative for classes that never touch, `swap` 1 where the kernel of that manifold
-    takes the second first, and the surface fields that go into the pair's row.
-    """
-    kind = [field for field in PAIR if field[0] == "kind"]
-    return dtype([*kind, ("swap", I8)], surface)
-
-
 def make_sort_leaves(spec: Spec):
     """Return `kernel(bodies, work) -> leaves`: bodies with bounds, sorted for the tree."""
     compound, sleeps = has_hook(spec, "place_parts"), has_hook(spec, "update_sleeping")
@@ -163,7 +152,7 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
     """Return `kernel(bodies, velocities, pairs, templates, params, work) -> count`.
 
     -1 when there are too few rows; `work.state["needed"]` says how many it takes.
-    surface: the fields that templates have beside `kind` and `swap`, see `template_dtype`. Rows
+    surface: the fields that templates have beside `kind` and `swap` (`record_layout`). Rows
     of `bodies` need `material`; with the effect `compound`, parts need `owner`, the row of their
     body, and every other row has its own there. Pairs that nothing can push get no row. Rows of
     ropes and joints stay where they are, before all others; bodies that a joint joins are no pair.

@@ -21,7 +21,7 @@ from ...compile import kernel
 from ...effects import has_hook
 from ...records import COMPOUND, F8, PLANE, TOUCHING, Field
 from ...spec import Spec
-from ..shapes import make_half_extents
+from ..shape_kernels import make_half_extents
 from .reach import make_reach
 
 # Larger: fewer lists, more pairs that are looked at in vain. For packed spheres stirred at 1 m/s

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...compile import kernel
+from ...records import ROPE
 from ...spec import Spec
-from ..rope import ROPE
 
 
 def make_copy_fields(spec: Spec, names: Sequence[str]):

@@ -20,7 +20,7 @@ from ...compile import inner, kernel, once
 from ...vectors import Vec3, dot, length, negative, position
 from ..records import UNBOUNDED, copy_vertex
 from ..scratch import NEW_VERTEX
-from ..shapes import make_support
+from ..shape_kernels import make_support
 from .simplex import drop_weightless, nearest_on_simplex
 
 # What the walk found out.

@@ -16,14 +16,8 @@ from ...compile import kernel, once
 from ...records import PLANE
 from ...vectors import Vec3, dot, minus, negative, plus_scaled, position, scaled
 from ..records import UNBOUNDED, copy_separation, normal_of, put_normal
-from ..shapes import (
-    has_curved,
-    make_best_face,
-    make_is_curved,
-    make_radius,
-    make_support,
-    shapes_in,
-)
+from ..shape_kernels import make_best_face, make_is_curved, make_radius, make_support
+from ..shapes import has_curved, shapes_in
 from .epa import make_epa
 from .gjk import FARTHER, OVERLAPPING, make_gjk
 

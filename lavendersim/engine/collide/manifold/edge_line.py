@@ -13,7 +13,8 @@ from typing import Any
 from ...compile import inner, kernel, once
 from ...vectors import Vec3, cross, dot, negative
 from ..records import FACE_LOOP, LINE, normal_of
-from ..shapes import make_edge, make_feature, make_is_polyhedral, shapes_in
+from ..shape_kernels import make_edge, make_feature, make_is_polyhedral
+from ..shapes import shapes_in
 from .line_normal import direction_of
 from .patch import PARALLEL
 
@@ -37,8 +38,8 @@ def make_edge_along(spec) -> Any:
     None where no pair has both a line that is no edge and an edge.
     """
     shapes = shapes_in(spec)
-    lines = any(shape.make_feature and not shape.polyhedral for shape in shapes)
-    if not (lines and any(shape.make_edge for shape in shapes)):
+    lines = any(shape.maker("make_feature") and not shape.polyhedral for shape in shapes)
+    if not (lines and any(shape.maker("make_edge") for shape in shapes)):
         return None
     feature, edge, is_polyhedral = make_feature(spec), make_edge(spec), make_is_polyhedral(spec)
 

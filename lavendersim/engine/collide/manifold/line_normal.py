@@ -17,7 +17,7 @@ from ...compile import inner, kernel, once
 from ...vectors import cross, dot, minus, plus, position, scaled
 from ..convex.separation import FACE_SHARE, make_separation_along
 from ..records import normal_of, put_normal
-from ..shapes import make_is_curved, make_is_polyhedral
+from ..shape_kernels import make_is_curved, make_is_polyhedral
 
 # Sine from which on two lines have a direction across both [-]: it is then right to some 1e-7 rad,
 # and a worse one is not taken.

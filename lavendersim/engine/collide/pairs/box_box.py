@@ -36,7 +36,6 @@ from ..manifold.box_clip import (
 )
 from ..manifold.point import manifold_normal, place, put_manifold_normal, reduce_manifold
 from ..records import normal_of
-from ..shape_pair import ShapePair
 
 # A face is kept while its penetration is at most this much deeper than the edges': a share of the
 # depth plus a share of the smallest half edge [-]. Smaller: flicker in stacks; larger: true
@@ -247,6 +246,3 @@ def make(spec):
         return reduce_manifold(manifold, manifold.points, count, manifold_normal(manifold))
 
     return separate(kernel(box_box, spec), spec)
-
-
-PAIR = ShapePair("box_box", ("box", "box"), make)

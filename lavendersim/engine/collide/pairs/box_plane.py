@@ -13,7 +13,6 @@ from __future__ import annotations
 from ...compile import inner, kernel
 from ...vectors import Vec3, dot, from_body, into_body
 from ..manifold.point import LEFT_OUT, WHOLE, place, put_manifold_normal, swap_points
-from ..shape_pair import ShapePair
 
 
 @inner
@@ -74,6 +73,3 @@ def make(spec):
         return kept
 
     return kernel(box_plane, spec)
-
-
-PAIR = ShapePair("box_plane", ("plane", "box"), make)

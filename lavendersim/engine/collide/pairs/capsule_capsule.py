@@ -16,7 +16,6 @@ from math import sqrt
 from ...compile import inner, kernel
 from ...vectors import Vec3, cross, divided, dot, length, minus
 from ..manifold.point import place, put_manifold_normal
-from ..shape_pair import ShapePair
 
 # Axes whose directions differ by less than this [rad] touch in two points. The ends of an overlap
 # of 2 hz metres are then up to 2e-3 hz beside each other: some 1e-6 hz^2 / r too deep [m].
@@ -134,6 +133,3 @@ def make(spec):
         return 1
 
     return kernel(capsule_capsule, spec)
-
-
-PAIR = ShapePair("capsule_capsule", ("capsule", "capsule"), make, closed_form=True)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from ...compile import kernel
 from ...vectors import Vec3, dot
 from ..manifold.point import place, put_manifold_normal
-from ..shape_pair import ShapePair
 
 
 def make(spec):
@@ -37,6 +36,3 @@ def make(spec):
         return count
 
     return kernel(capsule_plane, spec)
-
-
-PAIR = ShapePair("capsule_plane", ("plane", "capsule"), make)

@@ -19,8 +19,8 @@ from ..manifold.line_normal import make_line_normal
 from ..manifold.patch import contact_patch, frame_along
 from ..manifold.point import place, write_manifold
 from ..records import LINE, UNBOUNDED, normal_of
-from ..shape_pair import ShapePair
-from ..shapes import has_curved, make_feature, make_radius
+from ..shape_kernels import make_feature, make_radius
+from ..shapes import has_curved
 
 # The name of the witness points: apart from all names of `contact_patch`.
 NEAREST = 1 << 60
@@ -98,16 +98,3 @@ def make(spec):
         return write_manifold(scratch.manifold, rows, count, n)
 
     return kernel(convex, spec)
-
-
-CAPSULE_BOX = ShapePair("capsule_box", ("box", "capsule"), make)
-CYLINDER_BOX = ShapePair("cylinder_box", ("box", "cylinder"), make)
-CAPSULE_CYLINDER = ShapePair("capsule_cylinder", ("cylinder", "capsule"), make)
-CYLINDER_CYLINDER = ShapePair("cylinder_cylinder", ("cylinder", "cylinder"), make)
-WITH_HULLS = (
-    ShapePair("sphere_hull", ("hull", "sphere"), make),
-    ShapePair("hull_box", ("box", "hull"), make),
-    ShapePair("capsule_hull", ("hull", "capsule"), make),
-    ShapePair("cylinder_hull", ("hull", "cylinder"), make),
-    ShapePair("hull_hull", ("hull", "hull"), make),
-)

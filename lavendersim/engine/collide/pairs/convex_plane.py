@@ -12,7 +12,7 @@ from ...records import TOUCHING
 from ...vectors import Vec3, dot, negative, position
 from ..manifold.point import place, write_manifold
 from ..records import UNBOUNDED
-from ..shapes import make_feature, make_radius, make_support
+from ..shape_kernels import make_feature, make_radius, make_support
 
 CORNER_BITS = 8  # of a name, for the corner within the feature
 LOWEST = 1 << 60  # the name of the lowest point

@@ -17,7 +17,6 @@ from ..manifold.features import FACE_COSINE
 from ..manifold.point import LEFT_OUT, WHOLE, place, write_manifold
 from ..records import put_position
 from ..scratch import CAP_CORNERS
-from ..shape_pair import ShapePair
 from ..shapes.cylinder import put_cap
 
 RIM = 16
@@ -108,6 +107,3 @@ def make(spec):
         return kept
 
     return kernel(cylinder_plane, spec)
-
-
-PAIR = ShapePair("cylinder_plane", ("plane", "cylinder"), make)

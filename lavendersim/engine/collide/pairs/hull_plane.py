@@ -9,7 +9,6 @@ from __future__ import annotations
 from ...compile import kernel
 from ...vectors import Vec3, dot, from_body, into_body, vector_at
 from ..manifold.point import place, write_manifold
-from ..shape_pair import ShapePair
 
 
 def make(spec):
@@ -39,6 +38,3 @@ def make(spec):
         return write_manifold(scratch.manifold, rows, count, n)
 
     return kernel(hull_plane, spec)
-
-
-PAIR = ShapePair("hull_plane", ("plane", "hull"), make)

@@ -11,7 +11,6 @@ from math import sqrt
 from ...compile import inner, kernel
 from ...vectors import Vec3, divided, dot, from_body, into_body, minus, plus, plus_scaled
 from ..manifold.point import place, put_manifold_normal
-from ..shape_pair import ShapePair
 from .sphere_sphere import NO_DIRECTION
 
 
@@ -58,6 +57,3 @@ def make(spec):
         return 1
 
     return kernel(sphere_box, spec)
-
-
-PAIR = ShapePair("sphere_box", ("box", "sphere"), make, closed_form=True)

@@ -11,7 +11,6 @@ from math import sqrt
 from ...compile import kernel
 from ...vectors import Vec3, divided, dot, minus
 from ..manifold.point import place, put_manifold_normal
-from ..shape_pair import ShapePair
 from .sphere_sphere import NO_DIRECTION
 
 
@@ -42,6 +41,3 @@ def make(spec):
         return 1
 
     return kernel(sphere_capsule, spec)
-
-
-PAIR = ShapePair("sphere_capsule", ("capsule", "sphere"), make, closed_form=True)

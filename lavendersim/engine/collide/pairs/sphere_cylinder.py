@@ -11,7 +11,6 @@ from math import sqrt
 from ...compile import kernel
 from ...vectors import Vec3, from_body, into_body, minus
 from ..manifold.point import place, put_manifold_normal
-from ..shape_pair import ShapePair
 from .sphere_sphere import NO_DIRECTION
 
 
@@ -48,6 +47,3 @@ def make(spec):
         return 1
 
     return kernel(sphere_cylinder, spec)
-
-
-PAIR = ShapePair("sphere_cylinder", ("cylinder", "sphere"), make)

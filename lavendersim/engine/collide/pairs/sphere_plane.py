@@ -8,7 +8,6 @@ from __future__ import annotations
 from ...compile import kernel
 from ...vectors import Vec3, dot
 from ..manifold.point import place, put_manifold_normal
-from ..shape_pair import ShapePair
 
 
 def make(spec):
@@ -26,6 +25,3 @@ def make(spec):
         return 1
 
     return kernel(sphere_plane, spec)
-
-
-PAIR = ShapePair("sphere_plane", ("plane", "sphere"), make)

@@ -12,7 +12,6 @@ from math import sqrt
 from ...compile import kernel
 from ...vectors import Vec3, divided, dot, minus, plus_scaled
 from ..manifold.point import place, put_manifold_normal
-from ..shape_pair import ShapePair
 
 # Centres closer than this count as coincident: their squared distance has lost its digits [m].
 NO_DIRECTION = 1e-150
@@ -37,6 +36,3 @@ def make(spec):
         return 1
 
     return kernel(sphere_sphere, spec)
-
-
-PAIR = ShapePair("sphere_sphere", ("sphere", "sphere"), make, closed_form=True)

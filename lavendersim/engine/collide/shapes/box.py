@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from ...compile import kernel
-from ...records import BOX
 from ...vectors import Vec3, from_body, into_body
-from ..shape import Shape
 from .polyhedron import box_row, edge_of_facet, facet_along, feature_of_facet, put_loop
 
 
@@ -67,15 +65,3 @@ def make_edge(spec):
         return edge_of_facet(facet, count, n, hulls, outline)
 
     return kernel(box_edge, spec)
-
-
-SHAPE = Shape(
-    "box",
-    BOX,
-    make_support,
-    make_half_extents,
-    make_face,
-    make_feature,
-    make_edge,
-    polyhedral=True,
-)

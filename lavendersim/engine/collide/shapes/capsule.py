@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from ...compile import kernel
-from ...records import CAPSULE
 from ...vectors import Vec3
 from ..manifold.features import LINE_SLOPE, put_corner
 from ..records import LINE, NO_FEATURE, Feature
-from ..shape import Shape
 
 
 def make_support(spec):
@@ -46,8 +44,3 @@ def make_feature(spec):
         return Feature(LINE, 2, 0)
 
     return kernel(capsule_feature, spec)
-
-
-SHAPE = Shape(
-    "capsule", CAPSULE, make_support, make_half_extents, make_feature=make_feature, rounded=True
-)

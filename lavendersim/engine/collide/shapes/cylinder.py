@@ -9,12 +9,10 @@ from __future__ import annotations
 from math import sqrt
 
 from ...compile import inner, kernel
-from ...records import CYLINDER
 from ...vectors import Vec3, from_body, into_body, vector_of
 from ..manifold.features import FACE_COSINE, LINE_SLOPE, put_corner
 from ..records import DISC, LINE, NO_FEATURE, Feature, put_normal
 from ..scratch import CAP_CORNERS
-from ..shape import Shape
 
 # A cap tilted less than this [rad] stands: the lowest point of its rim lies less than 1e-6 radii
 # deeper, and its direction is mostly noise.
@@ -129,14 +127,3 @@ def make_feature(spec):
         return Feature(LINE, 2, SIDE)
 
     return kernel(cylinder_feature, spec)
-
-
-SHAPE = Shape(
-    "cylinder",
-    CYLINDER,
-    make_support,
-    make_half_extents,
-    make_face,
-    make_feature,
-    curved=True,
-)

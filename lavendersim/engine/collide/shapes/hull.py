@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from ...compile import kernel
-from ...records import HULL, HULL_BODY
 from ...vectors import Vec3, dot, from_body, into_body, vector_at
 from ..records import UNBOUNDED
-from ..shape import Shape
 from .polyhedron import edge_of_facet, facet_along, feature_of_facet, put_loop
 
 
@@ -57,15 +55,3 @@ def make_edge(spec):
         return edge_of_facet(facet, count, n, hulls, outline)
 
     return kernel(hull_edge, spec)
-
-
-SHAPE = Shape(
-    "hull",
-    HULL,
-    make_support,
-    make_face=make_face,
-    make_feature=make_feature,
-    make_edge=make_edge,
-    polyhedral=True,
-    fields=tuple(HULL_BODY),
-)

@@ -28,8 +28,9 @@ from lavendersim.engine.collide.joint import (
     put_ends,
 )
 from lavendersim.engine.collide.narrow_phase import make_manifold
-from lavendersim.engine.collide.rope import ROPE, make_count_connections
+from lavendersim.engine.collide.rope import make_count_connections
 from lavendersim.engine.record_layout import allocate_bodies, allocate_pairs
+from lavendersim.engine.records import ROPE
 from lavendersim.engine.spec import Spec
 
 SPEC = Spec(("compound", "frictionless_contact", "joint"), ("sphere_sphere",))

@@ -8,8 +8,9 @@ from interpreted import interpreted, records
 from single_bodies import row, scratch_of
 
 from lavendersim.engine.collide.narrow_phase import make_manifold
-from lavendersim.engine.collide.rope import FIRST_ROPE, ROPE, make_count_connections, make_rope
+from lavendersim.engine.collide.rope import FIRST_ROPE, make_count_connections, make_rope
 from lavendersim.engine.record_layout import allocate_bodies, allocate_pairs
+from lavendersim.engine.records import ROPE
 from lavendersim.engine.spec import Spec
 
 SPEC = Spec(("compound", "frictionless_contact", "rope"), ("sphere_sphere",))

@@ -1,4 +1,4 @@
-"""Which shapes are convex, and what a shape that says nothing is taken for."""
+"""Kernels ask the shape of a body, and one that says nothing is taken for its centre."""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ import pytest
 from interpreted import interpreted
 from single_bodies import body, row, scratch_of, spec_of
 
-from lavendersim.engine.collide.shape import Shape
-from lavendersim.engine.collide.shapes import (
-    SHAPES,
+from lavendersim.engine.collide.shape_kernels import (
     make_best_face,
     make_half_extents,
     make_is_curved,
@@ -17,23 +15,6 @@ from lavendersim.engine.collide.shapes import (
     make_support,
 )
 from lavendersim.engine.vectors import Vec3
-
-
-def test_what_has_a_support_or_a_radius_is_convex_and_nothing_else() -> None:
-    def maker(spec):
-        return None
-
-    assert not Shape("whatever").convex
-    assert Shape("grown", rounded=True).convex
-    assert Shape("core", make_support=maker).convex
-    convex = {name for name, shape in SHAPES.items() if shape.convex}
-    assert convex == {"sphere", "box", "capsule", "cylinder", "hull"}
-
-
-def test_kinds_are_the_numbers_in_bodies_and_all_different() -> None:
-    kinds = [shape.kind for shape in SHAPES.values()]
-    assert sorted(kinds) == list(range(len(kinds)))
-    assert [SHAPES[name].kind for name in ("plane", "sphere", "box")] == [0, 1, 2]
 
 
 @pytest.mark.parametrize(

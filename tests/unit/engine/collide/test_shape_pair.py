@@ -12,7 +12,7 @@ from lavendersim.engine.collide.shapes import SHAPES
 
 
 def pair(name: str, *shapes: str) -> ShapePair:
-    return ShapePair(name, shapes, lambda spec: None)
+    return ShapePair(name, shapes, "convex")
 
 
 def test_the_number_is_the_place_among_those_declared() -> None:

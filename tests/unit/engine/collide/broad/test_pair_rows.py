@@ -7,8 +7,9 @@ from itertools import combinations
 import numpy as np
 from interpreted import interpreted, records
 
-from lavendersim.engine.collide.broad.broad_phase import allocate_broad_phase, template_dtype
+from lavendersim.engine.collide.broad.broad_phase import allocate_broad_phase
 from lavendersim.engine.collide.broad.pair_rows import make_put_pair, make_write_rows
+from lavendersim.engine.record_layout import template_dtype
 from lavendersim.engine.records import BODY, PAIR, dtype
 from lavendersim.engine.spec import Spec
 

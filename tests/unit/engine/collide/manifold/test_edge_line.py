@@ -10,7 +10,7 @@ from single_bodies import body, row, scratch_of, spec_of, vector
 
 from lavendersim.engine.collide.manifold import edge_line
 from lavendersim.engine.collide.records import FACE_LOOP, LINE
-from lavendersim.engine.collide.shapes import make_feature
+from lavendersim.engine.collide.shape_kernels import make_feature
 from lavendersim.engine.vectors import Vec3
 
 HALF, HEIGHT = 0.5, 0.3  # of the box: its edge leads along x at y = HALF, z = HEIGHT

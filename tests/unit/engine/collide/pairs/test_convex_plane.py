@@ -7,7 +7,6 @@ import pytest
 import solid_poses
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.collide.pairs import convex_plane
 from lavendersim.engine.records import TOUCHING
 from lavendersim.engine.spec import Spec
 
@@ -19,7 +18,7 @@ PLANES = tuple(name for name, pair in SHAPE_PAIRS.items() if "plane" in pair.sha
 def test_the_lowest_point_is_that_of_the_closed_form(pair, monkeypatch):
     sample = solid_poses.random_sample(pair, POSES)
     closed = solid_poses.manifolds(sample, 0.05)
-    monkeypatch.setitem(SHAPE_PAIRS, pair, SHAPE_PAIRS[pair]._replace(make=convex_plane.make))
+    monkeypatch.setitem(SHAPE_PAIRS, pair, SHAPE_PAIRS[pair]._replace(file="convex_plane"))
     spec = Spec(effects=("rotation", "speculative"), shape_pairs=(pair,), solver="convex planes")
     general = solid_poses.manifolds(sample, 0.05, spec)
     assert any(len(found.phi) for found in closed)
@@ -50,7 +49,7 @@ def test_a_face_rests_on_its_corners(pair, monkeypatch):
         for j in range(3):
             body[f"r{i}{j}"] = float(i == j)
     body["x"], body["y"], body["z"] = 0.0, 0.0, height
-    monkeypatch.setitem(SHAPE_PAIRS, pair, SHAPE_PAIRS[pair]._replace(make=convex_plane.make))
+    monkeypatch.setitem(SHAPE_PAIRS, pair, SHAPE_PAIRS[pair]._replace(file="convex_plane"))
     spec = Spec(effects=("rotation", "speculative"), shape_pairs=(pair,), solver="convex planes")
     (found,) = solid_poses.manifolds(sample, 0.0, spec)
     assert len(found.phi) == 4

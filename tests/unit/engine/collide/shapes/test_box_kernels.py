@@ -11,7 +11,8 @@ from shape_laws import Seen, check_half_extents, check_support, drawn, unit
 from single_bodies import body, row, scratch_of, solid
 
 from lavendersim.engine.collide.records import FACE_LOOP, LINE, POINT
-from lavendersim.engine.collide.shapes.box import SHAPE, make_edge, make_face, make_feature
+from lavendersim.engine.collide.shapes import SHAPES
+from lavendersim.engine.collide.shapes.box import make_edge, make_face, make_feature
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.vectors import Vec3
 
@@ -19,14 +20,14 @@ HALF = np.array([0.5, 0.4, 0.3])
 
 
 def test_the_support_is_the_farthest_point_and_the_extents_hold_the_box(rng) -> None:
-    check_support(SHAPE, rng)
-    check_half_extents(SHAPE, rng)
+    check_support(SHAPES["box"], rng)
+    check_half_extents(SHAPES["box"], rng)
 
 
 def test_the_face_is_the_one_whose_normal_is_nearest_to_n(rng) -> None:
     face = interpreted(make_face(Spec()))
     for _ in range(40):
-        a, n = drawn(SHAPE, rng), unit(rng)
+        a, n = drawn(SHAPES["box"], rng), unit(rng)
         number, normal = face(row(a), Vec3(*n), scratch_of([]).hulls)
         local = solid(a).matrix.T @ n
         axis = int(np.argmax(np.abs(local)))

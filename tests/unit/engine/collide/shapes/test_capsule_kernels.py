@@ -7,12 +7,13 @@ from shape_laws import Seen, check_half_extents, check_support
 from single_bodies import body, solid
 
 from lavendersim.engine.collide.records import LINE, POINT
-from lavendersim.engine.collide.shapes.capsule import SHAPE, make_feature
+from lavendersim.engine.collide.shapes import SHAPES
+from lavendersim.engine.collide.shapes.capsule import make_feature
 
 
 def test_the_support_is_an_end_and_the_extents_hold_the_capsule(rng) -> None:
-    check_support(SHAPE, rng)
-    check_half_extents(SHAPE, rng)
+    check_support(SHAPES["capsule"], rng)
+    check_half_extents(SHAPES["capsule"], rng)
 
 
 def test_the_axis_is_a_line_up_to_a_slope_and_steeper_a_point(rng) -> None:

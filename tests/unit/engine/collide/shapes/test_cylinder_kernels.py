@@ -11,7 +11,8 @@ from shape_laws import Seen, check_half_extents, check_support, drawn, unit
 from single_bodies import body, row, scratch_of, solid
 
 from lavendersim.engine.collide.records import DISC, LINE, POINT
-from lavendersim.engine.collide.shapes.cylinder import SHAPE, make_face, make_feature, make_support
+from lavendersim.engine.collide.shapes import SHAPES
+from lavendersim.engine.collide.shapes.cylinder import make_face, make_feature, make_support
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.vectors import Vec3
 
@@ -23,8 +24,8 @@ def turned(rng) -> np.ndarray:
 
 
 def test_the_support_is_the_farthest_point_and_the_extents_hold_the_cylinder(rng) -> None:
-    check_support(SHAPE, rng)
-    check_half_extents(SHAPE, rng)
+    check_support(SHAPES["cylinder"], rng)
+    check_half_extents(SHAPES["cylinder"], rng)
 
 
 def test_straight_along_the_axis_the_support_is_the_caps_centre() -> None:
@@ -37,7 +38,7 @@ def test_straight_along_the_axis_the_support_is_the_caps_centre() -> None:
 def test_the_face_is_the_cap_on_the_side_of_n(rng) -> None:
     face = interpreted(make_face(Spec()))
     for _ in range(20):
-        a, n = drawn(SHAPE, rng), unit(rng)
+        a, n = drawn(SHAPES["cylinder"], rng), unit(rng)
         number, normal = face(row(a), Vec3(*n), scratch_of([]).hulls)
         axis = solid(a).matrix[:, 2]
         assert number == (axis @ n > 0.0)

@@ -9,8 +9,8 @@ from lavendersim.engine.collide.iteration_limits import (
     has_ascent,
     has_epa,
     has_gjk,
-    make_count_limits,
 )
+from lavendersim.engine.collide.limit_counts import make_count_limits
 from lavendersim.engine.collide.scratch import allocate_scratch
 from lavendersim.engine.memory import allocate_counters
 from lavendersim.engine.spec import Spec
