@@ -9,13 +9,14 @@ import re
 import sys
 from functools import cache
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 import numba
 import numpy as np
 from numba.core.cpu import CPUTargetOptions
 from numba.core.registry import cpu_target
+
+from .sources import digest, engine_sources
 
 # Kernels allocate nothing, and without reference counting a sphere's step costs a third. The option
 # is undocumented: a numba that does not know it compiles with counting, to the same bits.
@@ -59,32 +60,10 @@ SETTINGS = (
 
 
 @cache
-def _sources() -> dict[str, bytes]:
-    """Return every engine source by its path in the engine."""
-    root = Path(__file__).parent
-    return {
-        path.relative_to(root).as_posix(): path.read_bytes() for path in sorted(root.rglob("*.py"))
-    }
-
-
-def _digest(sources: dict[str, bytes]) -> str:
-    digest = hashlib.sha256()
-    for path, source in sources.items():
-        digest.update(path.encode() + b"\0" + source + b"\0")
-    return digest.hexdigest()
-
-
-@cache
-def source_hash() -> str:
-    """Return the sha256 of every engine source, by path and content."""
-    return _digest(_sources())
-
-
-@cache
 def _compiler_hash() -> str:
     """Return the sha256 of the sources that know numba: they say how kernels are compiled."""
     knows = re.compile(rb"^(from|import) (numba|llvmlite)", re.MULTILINE)
-    return _digest({path: text for path, text in _sources().items() if knows.search(text)})
+    return digest({path: text for path, text in engine_sources().items() if knows.search(text)})
 
 
 @cache

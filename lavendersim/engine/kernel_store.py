@@ -18,11 +18,12 @@ from typing import NamedTuple
 
 from lavendersim.durable_files import write_whole
 
-from .compile_options import build
+from .sources import source_hash
 
 DIRECTORY_VARIABLE = "LAVENDER_CACHE_DIR"
 LIMIT = 1_000_000_000  # [byte] of all that is kept: some thousand plans
-SUFFIXES = (".kernel", ".part", ".object")
+NAMES = ".names"  # what kernels a plan has (`composition`)
+SUFFIXES = (".kernel", ".part", ".object", NAMES)
 ANEW = "kernels are compiled anew in every process"
 
 
@@ -123,9 +124,16 @@ def _files(folder: Path) -> Iterator[tuple[os.DirEntry[str], os.stat_result]]:
 
 def kept_kernels() -> list[Kept]:
     """Return the compiled code on disk, what was used last at the end."""
-    own = build()
+    from .compile_options import build  # late: numba
+
+    own = {build(), source_hash()[:8]}
     found = [
-        Kept(Path(entry.path), status.st_size, status.st_atime_ns, own in entry.name.split("-"))
+        Kept(
+            Path(entry.path),
+            status.st_size,
+            status.st_atime_ns,
+            not own.isdisjoint(Path(entry.name).stem.split("-")),
+        )
         for entry, status in _files(directory()[0])
     ]
     return sorted(found, key=lambda kept: (kept.used, kept.path))

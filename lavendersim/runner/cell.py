@@ -13,10 +13,10 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
-from lavendersim.engine.compile_options import source_hash
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
+from lavendersim.engine.sources import source_hash
 from lavendersim.engine.step_doubling import MOST_SUBSTEPS
 from lavendersim.engine.together import EngineAdvance, advance_together
 from lavendersim.measures import applies, outcomes_of

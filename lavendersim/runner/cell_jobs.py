@@ -55,7 +55,7 @@ def prepare(experiment: Experiment, workers: int = 1) -> Prepared:
 
     workers: processes that many cells are planned in.
     """
-    from lavendersim.engine.compile_options import source_hash
+    from lavendersim.engine.sources import source_hash
 
     check(experiment)
     cells = experiment.cells()

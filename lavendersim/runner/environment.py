@@ -133,7 +133,7 @@ def about(arguments: Sequence[str]) -> dict[str, str]:
 
 def environment(*specs: Spec) -> dict[str, Any]:
     """Return what a reader needs to judge the timings of a run and to repeat it."""
-    from lavendersim.engine.compile_options import source_hash
+    from lavendersim.engine.sources import source_hash
     from lavendersim.engine.step import advance_for
 
     return {

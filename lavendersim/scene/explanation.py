@@ -7,14 +7,12 @@ and without it. Nothing is compiled.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import cache
 from typing import Any, NamedTuple
 
 from lavendersim.engine.collide import SHAPE_PAIRS
+from lavendersim.engine.composition import composition_of, kept
 from lavendersim.engine.effects import EFFECTS, Effect
-from lavendersim.engine.solvers.catalogue import SOLVERS
 from lavendersim.engine.spec import Spec
-from lavendersim.engine.step import kernels_of
 
 from .laws import needs
 from .plan import CHOICES, Plan
@@ -71,6 +69,11 @@ class Explanation(NamedTuple):
 
 def explain(plan: Plan, others: Iterable[Plan] = ()) -> Explanation:
     """Explain a plan; its title distinguishes it from `others`, those of the same sweep."""
+    with kept(plan.spec):
+        return _explained(plan, others)
+
+
+def _explained(plan: Plan, others: Iterable[Plan]) -> Explanation:
     spec, choices = plan.spec, dict(zip(CHOICES, plan.choices, strict=True))
     composed = composed_kernels(spec)
     effects = [_effect(plan, effect) for effect in EFFECTS]
@@ -166,8 +169,8 @@ def _shape_pair(plan: Plan, name: str) -> ExplanationItem:
 
 def _solver(plan: Plan, composed: Kernels) -> ExplanationItem:
     spec = plan.spec
-    kept = _names(SOLVERS[spec.solver].contact_fields)
-    fields = {"contact": kept} if kept else {}
+    columns = list(dict.fromkeys(composition_of(spec).solver_columns))
+    fields = {"contact": columns} if columns else {}
     stops = "stops at a tolerance" if spec.tolerance else "takes all its sweeps"
     return ExplanationItem(
         name=spec.solver,
@@ -198,14 +201,10 @@ def title_of(plan: Plan, others: Iterable[Plan]) -> str:
     return f"{', '.join(differing)} ({cells})" if differing else cells
 
 
-@cache
-def _composed(spec: Spec) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    return tuple((module, tuple(names)) for module, names in kernels_of(spec).items())
-
-
 def composed_kernels(spec: Spec) -> Kernels:
     """Return the kernels that an engine is composed of, without the links between them."""
-    return {module: list(names) for module, names in _composed(spec) if module != _GLUE}
+    composed = composition_of(spec).kernels
+    return {module: list(names) for module, names in composed.items() if module != _GLUE}
 
 
 def _without(kernels: Kernels, *others: Mapping[str, list[str]]) -> Kernels:
@@ -220,7 +219,3 @@ def _without(kernels: Kernels, *others: Mapping[str, list[str]]) -> Kernels:
 def _common(kernels: Kernels, others: Kernels) -> Kernels:
     """Return the kernels that both have."""
     return _without(kernels, _without(kernels, others))
-
-
-def _names(fields: Iterable[tuple[str, str]]) -> list[str]:
-    return list(dict.fromkeys(name for name, _ in fields))

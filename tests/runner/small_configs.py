@@ -48,7 +48,7 @@ from hashlib import sha256
 from pathlib import Path
 warnings.simplefilter("error", UserWarning)
 import lavendersim
-from lavendersim.engine.compile_options import source_hash
+from lavendersim.engine.sources import source_hash
 from lavendersim.engine.kernel_store import directory
 finished = lavendersim.run(Path(sys.argv[1]), root=Path(sys.argv[2]))
 print(json.dumps({

@@ -57,10 +57,3 @@ def test_options_processor_and_sources_have_theirs(monkeypatch) -> None:
             patch.setattr(compile_options, part, lambda: "another")
             assert build() != name
     assert build() == name
-
-
-def test_a_digest_tells_where_a_source_stands_and_where_it_ends() -> None:
-    digest = compile_options._digest
-    assert digest({"a": b"xy"}) != digest({"b": b"xy"})
-    assert digest({"a": b"x", "b": b"y"}) != digest({"a": b"xb\0y"})
-    assert digest({"a": b"x", "b": b"y"}) == digest({"a": b"x", "b": b"y"})

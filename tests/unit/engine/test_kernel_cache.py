@@ -89,7 +89,7 @@ def test_every_change_of_an_engine_source_changes_the_source_hash(
 ) -> None:
     def source_hash() -> str:
         return python(
-            "from lavendersim.engine.compile_options import source_hash; print(source_hash())",
+            "from lavendersim.engine.sources import source_hash; print(source_hash())",
             PYTHONPATH=str(tmp_path),
         )
 

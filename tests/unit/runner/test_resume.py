@@ -178,7 +178,7 @@ def test_a_config_or_an_engine_that_has_changed_begins_a_new_run(
     drops.write_text(DROPS)
     left = unfinished(drops, tmp_path / "more")
     begins = begins.replace(begins.split()[3], f"RUNS/{left.path.name}:")
-    hashes = "lavendersim.engine.compile_options.source_hash"
+    hashes = "lavendersim.engine.sources.source_hash"
     monkeypatch.setattr(hashes, lambda: "another")
     found, said = resumed(drops, tmp_path / "more")
     assert (found.path != left.path, said) == (True, [f"the engine {begins}"])

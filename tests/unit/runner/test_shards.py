@@ -64,7 +64,7 @@ def test_shards_of_another_config_or_engine_are_refused(
     if what == "config":
         drops.write_text(DROPS + "# another\n")
     elif what == "engine":
-        hashes = "lavendersim.engine.compile_options.source_hash"
+        hashes = "lavendersim.engine.sources.source_hash"
         monkeypatch.setattr(hashes, lambda: "another")
     else:
         monkeypatch.setattr("lavendersim.runner.environment.versions", lambda: {"numba": "0"})
