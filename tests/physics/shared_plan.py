@@ -153,6 +153,35 @@ scene:
 numerics: {accuracy: 1.0e-4}
 duration: 1
 """
+# By the chapter's numerics: balls that nothing turns, and bodies that turn.
+CHAPTER_BALLS = """
+scene:
+  surfaces: {one: {restitution: 0.5, compliance: 1.0e-6}}
+  bodies:
+    floor: {shape: {kind: plane}, surface: one}
+    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [0, 0, 1], surface: one}
+    other: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [1, 0, 1], surface: one}
+numerics: {preset: chapter}
+duration: 1
+"""
+CHAPTER_TURNING = """
+scene:
+  surfaces:
+    one: {friction: 0.5, restitution: 0.5, torsional_friction: 0.001, rolling_friction: 0.001}
+    two: {friction: 0}
+  bodies:
+    floor: {shape: {kind: plane}, surface: one}
+    brick:
+      shape: {kind: box, size: [0.2, 0.1, 0.3]}
+      mass: 1
+      position: [0, 0, 1]
+      angular_velocity: [1, 2, 3]
+      surface: one
+    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [1, 0, 1], surface: one}
+    low: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [2, 0, 1], surface: two}
+numerics: {preset: chapter}
+duration: 1
+"""
 NEVER_ADDED = {"impact_order", "rotation"}  # nor what needs the former
 BALLS_PAIRS = ("sphere_plane", "sphere_sphere")
 PAIRS = (
@@ -168,6 +197,8 @@ SHARED: dict[str, tuple[tuple[str, ...], ...]] = {  # shape pairs, and more effe
     SPRINGY: (SPRINGY_PAIRS, ()),
     LINKED: (LINKED_PAIRS, ()),
     ACCURATE: (ACCURATE_PAIRS, ("sleeping",)),
+    CHAPTER_BALLS: (BALLS_PAIRS, ("broad_phase", "sleeping")),
+    CHAPTER_TURNING: (LINKED_PAIRS, ("frictionless_contact",)),
 }
 BY_EFFECTS = CHOICES.index("sleeping")  # a choice that says no more than that the effect is there
 
