@@ -337,8 +337,9 @@ def _run_shard(
     for sentence in done.lost:
         typer.echo(f"{experiment.name}: {sentence}", err=True)
     of = "" if shard is None else f" of part {shard}"
+    closed = f"{done.measured} measured whose logs were closed, " if done.measured else ""
     typer.echo(
-        f"{typer.style(experiment.name, bold=True)}: {done.ran} cells run here, "
+        f"{typer.style(experiment.name, bold=True)}: {done.ran} cells run here, {closed}"
         f"{done.ended} of {done.cells}{of} have ended; {done.shard}"
     )
     typer.echo(f"  judge and draw all with: lavender merge {shlex.quote(str(into))}")
