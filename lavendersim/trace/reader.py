@@ -112,6 +112,12 @@ class Trace:
         lines += [f"  without {topic}: {why}" for topic, why in self.absent.items()]
         return "\n".join(lines)
 
+    def _repr_html_(self) -> str:
+        """Return the log as a notebook shows it."""
+        from lavendersim.trace.shown_log import html_of  # late: reading needs none of it
+
+        return html_of(self)
+
     def verify(self) -> None:
         """Raise TraceError unless every byte of the log is as it was written.
 
