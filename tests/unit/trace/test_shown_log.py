@@ -1,4 +1,4 @@
-"""A notebook shows of a log what is in it, escaped, at once for any length, and of a cut one why."""
+"""A notebook shows what is in a log, escaped; of a cut one why, and what is left."""
 
 from __future__ import annotations
 
