@@ -119,10 +119,7 @@ class Trace:
         return html_of(self)
 
     def verify(self) -> None:
-        """Raise TraceError unless every byte of the log is as it was written.
-
-        The first column that is read of a log asks for it too.
-        """
+        """Raise TraceError unless every byte is as written; the first column read asks, too."""
         self._source.verify()
 
     @property
@@ -326,10 +323,7 @@ class Trace:
                 yield decode.decode_contacts(chunk, fields, stride, frame)
 
     def table(self, name: str) -> Table:
-        """Return `step`, `pose`, `velocity` or `contact` for Arrow, pandas, polars or DuckDB.
-
-        UsageError for another name, and where the log has no such topic.
-        """
+        """Return `step`, `pose`, `velocity` or `contact` for Arrow; UsageError without it."""
         from lavendersim.trace.tables import table_of  # late: reading needs no Arrow
 
         return table_of(self, name)
