@@ -73,21 +73,22 @@ Strict = Annotated[
 ]
 
 
-def _run_own(path: Path | None) -> Path | None:
-    if path is not None:
+def _run_own(paths: list[Path] | None) -> list[Path] | None:
+    if paths:
         from lavendersim.measures.own_file import read_own
 
-        read_own(path)
-    return path
+        for path in paths:
+            read_own(path)
+    return paths
 
 
 Own = Annotated[
-    Path | None,
+    list[Path] | None,
     typer.Option(
         "--measures",
         metavar="FILE",
         callback=_run_own,
-        help="The measures.py that the run was made with; it is run.",
+        help="A measures.py that the run was made with; it is run. Repeatable.",
     ),
 ]
 Runs = Annotated[Path, typer.Option("--runs", metavar="DIR", help="Where runs are kept.")]
@@ -336,8 +337,9 @@ def _run_shard(
     for sentence in done.lost:
         typer.echo(f"{experiment.name}: {sentence}", err=True)
     of = "" if shard is None else f" of part {shard}"
+    closed = f"{done.measured} measured whose logs were closed, " if done.measured else ""
     typer.echo(
-        f"{typer.style(experiment.name, bold=True)}: {done.ran} cells run here, "
+        f"{typer.style(experiment.name, bold=True)}: {done.ran} cells run here, {closed}"
         f"{done.ended} of {done.cells}{of} have ended; {done.shard}"
     )
     typer.echo(f"  judge and draw all with: lavender merge {shlex.quote(str(into))}")

@@ -60,13 +60,22 @@ _entries: dict[int, Any] = {}
 _codes: dict[int, int] = {}
 
 
-def _types_of(arrays: Any) -> Any:
-    """Return what numba tells arrays apart by, in the shape of the tuples that they stand in."""
-    if isinstance(arrays, np.ndarray):
-        return arrays.dtype, arrays.ndim, arrays.flags.num & _FLAGS
-    if isinstance(arrays, tuple):
-        return type(arrays), tuple(_types_of(inner) for inner in arrays)
-    return type(arrays)
+def _types_of(arrays: Any) -> tuple[Any, ...]:
+    """Return what numba tells arrays apart by, and the tuples that they stand in."""
+    found: list[Any] = []
+    _note_types(arrays, found)
+    return tuple(found)
+
+
+def _note_types(part: Any, found: list[Any]) -> None:
+    if isinstance(part, np.ndarray):
+        found += part.dtype, part.ndim, part.flags.num & _FLAGS
+    elif isinstance(part, tuple):
+        found += type(part), len(part)
+        for inner in part:
+            _note_types(inner, found)
+    else:
+        found.append(type(part))
 
 
 class Engine:

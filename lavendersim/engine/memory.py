@@ -10,7 +10,6 @@ of no rows, or (): it takes part in no kernel.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -134,13 +133,20 @@ class Log(NamedTuple):
     velocity_bits: np.ndarray  # (n, words) State.velocities as uint64
 
 
-def arrays_of(memory: Any) -> Iterator[np.ndarray]:
-    """Yield every array in nested tuples, in their order."""
-    if isinstance(memory, np.ndarray):
-        yield memory
-    elif isinstance(memory, tuple):
-        for part in memory:
-            yield from arrays_of(part)
+def arrays_of(memory: Any) -> list[np.ndarray]:
+    """Return every array in nested tuples, in their order."""
+    found: list[np.ndarray] = []
+    _collect(memory, found)
+    return found
+
+
+def _collect(memory: Any, found: list[np.ndarray]) -> None:
+    # A list that grows: of nested generators an array passes through as many as it lies deep.
+    for part in memory if isinstance(memory, tuple) else (memory,):
+        if isinstance(part, np.ndarray):
+            found.append(part)
+        elif isinstance(part, tuple):
+            _collect(part, found)
 
 
 def allocate_state(

@@ -119,10 +119,8 @@ def _load(
         report.add(root.mark, sentence)
         raise ConfigError(report.defects)
     root, text, known = with_new_spellings(root, name), decode(raw), len(report.defects)
-    if file and (whole := with_parents(root, file, name, report)) is not None:
-        root, text = whole
-    if file and (whole := with_own_measures(root, file, report)) is not None:
-        root, text = whole
+    if file is not None:
+        root, text = _with_files(root, text, file, report)
     if len(report.defects) > known:  # of files beside this one: what it has is not known
         raise ConfigError(report.defects)
     root = tree = with_overrides(root, options.overrides, report)
@@ -151,6 +149,17 @@ def _load(
     }
     path, options = Path(name), options._replace(reduced=shortened)
     return Experiment(path.stem, path, text, config, values, tree, made, options, tuple(computed))
+
+
+def _with_files(root: Node, text: str, file: Path, report: Report) -> tuple[Node, str]:
+    """Return a tree and its text with what files have that it extends, or that stand beside it."""
+    head, files = "", {report.name: file}
+    if (whole := with_parents(root, file, report.name, report)) is not None:
+        root, text, files = whole.tree, whole.text, {**whole.files, **files}
+        head = text[: text.find("\n") + 1]
+    if (own := with_own_measures(root, files, report)) is not None:
+        root, text = own[0], head + own[1]
+    return root, text
 
 
 def _check_first(root: Node, axes: sweep.Products, report: Report) -> ExperimentConfig | None:

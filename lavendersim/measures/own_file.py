@@ -76,24 +76,26 @@ def own_measure(function: Function) -> Function:
     return function
 
 
-def read_own(path: Path) -> OwnFile:
+def read_own(path: Path, called: str = "") -> OwnFile:
     """Run a file of measures and return its kinds; what this process may run grows by it.
 
-    ConfigError with the line where it cannot be run, UsageError where it cannot be read.
+    called: what messages call it; its path, where nothing is given. ConfigError with the line
+    where it cannot be run, UsageError where it cannot be read.
     """
+    called = called or str(path)
     try:
         with path.open("rb") as file:
             data = file.read(LARGEST + 1)
     except OSError as error:
-        raise UsageError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+        raise UsageError(f"{called}: {(error.strerror or str(error)).lower()}") from None
     if len(data) > LARGEST:
-        raise UsageError(f"{path}: larger than {LARGEST} bytes")
+        raise UsageError(f"{called}: larger than {LARGEST} bytes")
     try:
         source = data.decode("utf-8")
     except UnicodeDecodeError:
-        raise UsageError(f"{path}: not UTF-8") from None
+        raise UsageError(f"{called}: not UTF-8") from None
     sha256 = hashlib.sha256(data).hexdigest()
-    found = _run(sha256, source, str(path))
+    found = _run(sha256, source, called)
     FromFile.SOURCES[sha256] = source
     return found
 
@@ -102,9 +104,9 @@ def evaluate_own(spec: FromFile, trace: Trace) -> Value:
     """Return a measure of a file; UsageError where this process may not run it."""
     if spec.source is None:
         raise NoSourceError(without_source(spec))
-    known = _run(spec.sha256, spec.source, FILE).kinds
+    known = _run(spec.sha256, spec.source, spec.file).kinds
     if spec.function not in known:
-        raise UsageError(f"{FILE}: has no measure {spec.function!r}, as a run of it says")
+        raise UsageError(f"{spec.file}: has no measure {spec.function!r}, as a run of it says")
     kind = known[spec.function]
     given = kind.model.model_validate(_plain(spec.parameters)).model_dump()
     try:
@@ -115,10 +117,16 @@ def evaluate_own(spec: FromFile, trace: Trace) -> Value:
     except Exception as error:
         line = _line_of(error, spec.sha256)
         what = f"{type(error).__name__}: {error}".rstrip(": ")
-        raise UsageError(f"{FILE}:{line}: {spec.function}: {what}") from error
+        raise UsageError(f"{spec.file}:{line}: {spec.function}: {what}") from error
     if row.ndim > 1:
-        raise UsageError(f"{FILE}: {spec.function}: expected a number or a row, found {row.ndim}-D")
+        what = f"expected a number or a row, found {row.ndim}-D"
+        raise UsageError(f"{spec.file}: {spec.function}: {what}")
     return float(row) if row.ndim == 0 else row
+
+
+def may_measure(measures: Iterable[Measure]) -> bool:
+    """Whether none of them is of a file that this process may not run."""
+    return all(not isinstance(spec, FromFile) or spec.source is not None for spec in measures)
 
 
 def check_sources(measures: Iterable[Measure]) -> None:
@@ -131,8 +139,8 @@ def check_sources(measures: Iterable[Measure]) -> None:
 def without_source(spec: FromFile) -> str:
     """Return the sentence for a measure whose file nobody has named."""
     return (
-        f"measure {spec.function} is of a file {FILE} ({spec.sha256[:16]}): no code of a run is "
-        f"run; name that file with --measures {FILE}"
+        f"measure {spec.function} is of a file {spec.file} ({spec.sha256[:16]}): no code of a run "
+        f"is run; name that file with --measures {spec.file}"
     )
 
 

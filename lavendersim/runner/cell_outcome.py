@@ -6,6 +6,7 @@ JSON gives back every number as it was, NaN and infinities included.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -69,7 +70,9 @@ def ended_cells(directory: Path) -> dict[str, EndedCell]:
     that says so is damaged.
     """
     try:
-        return {name: _ended(row) for name, row in ended_rows(directory).items() if _is_noted(row)}
+        return {
+            name: ended_of(row) for name, row in ended_rows(directory).items() if _is_noted(row)
+        }
     except (ValueError, KeyError, TypeError) as error:
         raise TraceError(f"{directory / ENDED}: damaged: {error}") from None
 
@@ -79,7 +82,8 @@ def _is_noted(row: dict[str, Any]) -> bool:
     return "outcome" in row or "measured" in row
 
 
-def _ended(row: dict[str, Any]) -> EndedCell:
+def ended_of(row: Mapping[str, Any]) -> EndedCell:
+    """Return what a line says of a cell that ended; errors of its table where it is damaged."""
     accuracy = row["accuracy"]
     worst = {part: Worst(*found) for part, found in accuracy["worst"].items()}
     log: LogDigest | None = digest_of(row["log"])

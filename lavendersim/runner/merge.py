@@ -8,8 +8,6 @@ they are is checked.
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -19,12 +17,13 @@ from lavendersim.config_options import ConfigOptions
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import Experiment, load_experiment_text
 
+from .ended_logs import ended_in
 from .experiment_run import Finished, complete, make_directory
 from .leases import Leases
 from .progress import Progress
 from .run_directory import CONFIG, RUNS, check_latest, point_latest
 from .run_lock import run_lock
-from .shards import ended_in, read_identity, refuse_others, shards_in
+from .shards import link, read_identity, refuse_others, shards_in
 
 if TYPE_CHECKING:
     from .cell_outcome import EndedCell
@@ -49,6 +48,8 @@ def merge(
     UsageError where there are none, or some are of another config or engine. TraceError where two
     of them have different bytes for one cell.
     """
+    from lavendersim.measures.own_file import may_measure
+
     from .cell_jobs import different, prepare
     from .shards import identity_of
 
@@ -59,7 +60,8 @@ def merge(
     prepared = prepare(experiment)
     refuse_others(into, identity_of(prepared))
     by_log = {path.name: job for path, job in different(prepared.jobs(into)).items()}
-    done, damaged = _whole(ended_in(into), [*by_log])
+    found = ended_in(shards, unmeasured=may_measure(experiment.measures.values()))
+    done, damaged = _whole(found, [*by_log])
     if left := [log for log in by_log if log not in done]:
         labels = [by_log[log].cells[0].label or experiment.name for log in left]
         running = Leases(into).run_by_others(left)
@@ -71,7 +73,7 @@ def merge(
         cells = directory / "cells"
         cells.mkdir()
         for log, (shard, _) in done.items():
-            _link(shard / "cells" / log, cells / log)
+            link(shard / "cells" / log, cells / log)
         ended = {log: one for log, (_, one) in done.items()}
         finished = complete(prepared, directory, ended, jobs=1, progress=progress)
     point_latest(directory, root)
@@ -114,11 +116,3 @@ def _whole(
             whole[log] = shard, one
             break
     return whole, damaged
-
-
-def _link(log: Path, path: Path) -> None:
-    """Give a log another name, which takes no room; where a file system has no links, copy it."""
-    try:
-        os.link(log, path)
-    except OSError:
-        shutil.copyfile(log, path)

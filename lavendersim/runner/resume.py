@@ -13,21 +13,20 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from lavendersim.durable_files import write_whole
 from lavendersim.errors import TraceError
 from lavendersim.experiment import Experiment
 from lavendersim.trace.whole import INTERRUPTED
 
+from .ended_logs import COMPLETE
 from .leftovers import UNFINISHED
 from .run_directory import CONFIG, Run, list_runs
 from .run_index import ENDED, PENDING, kept_lines
 
 if TYPE_CHECKING:
     from .cell_outcome import EndedCell
-
-COMPLETE: Final = "complete"
 
 
 def newest_run(experiment: Experiment, root: Path) -> Run | None:

@@ -15,6 +15,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import socket
 from collections import deque
 from collections.abc import Mapping
@@ -25,19 +26,18 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from lavendersim.durable_files import flush_tree, write_whole
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import Experiment
-from lavendersim.trace.whole import INTERRUPTED
 
+from .ended_logs import EndedLogs
 from .interruption import Interrupted, handled
 from .leases import SHARDS, Leases, alive
 from .leftovers import UNFINISHED
 from .progress import Progress
 from .run_directory import CONFIG
-from .run_index import ENDED, drop_cut_line
+from .run_index import drop_cut_line
 
 if TYPE_CHECKING:
     from .cell import CellJob
     from .cell_jobs import Prepared
-    from .cell_outcome import EndedCell
 
 SHARD: Final = "shard.json"
 # Cells that a worker takes at once are to keep it busy for so long [s]: fewer, and processes are
@@ -50,6 +50,7 @@ class ShardRun(NamedTuple):
 
     shard: Path
     ran: int
+    measured: int  # of cells whose logs were closed before their worker was killed
     lost: list[str]  # a sentence of every cell whose process died
     ended: int  # of `cells`, here or by other workers
     cells: int  # different ones that it was given: all, or those of its part
@@ -99,12 +100,14 @@ def run_shard(
             with handled():
                 worker.run(whole=part is not None)
         except Interrupted as end:
-            whole = f"{worker.ran} cells of it are whole"
+            whole = f"{worker.ran + worker.measured} cells of it are whole"
             raise Interrupted(f"{experiment.name}: {end}: {whole}, {shard}") from None
         finally:
             flush_tree(shard)
     done = EndedLogs(into).read()
-    return ShardRun(shard, worker.ran, worker.lost, len(done & by_log.keys()), len(by_log))
+    return ShardRun(
+        shard, worker.ran, worker.measured, worker.lost, len(done & by_log.keys()), len(by_log)
+    )
 
 
 class _Worker:
@@ -121,7 +124,7 @@ class _Worker:
         self._leases, self._shard = Leases(into), shard.name
         self._ended = EndedLogs(into)
         self._by_log, self._jobs, self._progress = by_log, jobs, progress
-        self.ran = 0
+        self.ran = self.measured = 0
         self.lost: list[str] = []
 
     def run(self, whole: bool) -> None:
@@ -132,14 +135,30 @@ class _Worker:
         waiting = deque(self._by_log)
         while batch := self._take(waiting, most):
             begin = perf_counter()
-            tasks = [self._by_log[log] for log in batch]
+            tasks = [self._by_log[log] for log in batch if not self._measure_closed(log)]
             for job, (outcome, _) in outcomes_of(tasks, self._jobs, self._progress):
                 self.ran += 1
                 if outcome.log is None:
                     self.lost.append(f"cell {job.cells[0].label or job.cell}: {outcome.status}")
-                self._progress.cell_done(self.ran, len(self._by_log))
+                self._progress.cell_done(self.ran + self.measured, len(self._by_log))
             took = perf_counter() - begin
             most = max(self._jobs, min(2 * most, int(most * BATCH / max(took, 1e-3))))
+
+    def _measure_closed(self, log: str) -> bool:
+        """Measure a cell whose log was closed by a worker that was killed; false where none was."""
+        from .cell import measured_later
+
+        if (closed := self._ended.closed(log)) is None:
+            return False
+        path, outcome = closed
+        job = self._by_log[log]
+        if path != job.path:
+            job.path.unlink(missing_ok=True)
+            link(path, job.path)
+        measured_later(job, outcome)
+        self.measured += 1
+        self._progress.cell_done(self.ran + self.measured, len(self._by_log))
+        return True
 
     def _take(self, waiting: deque[str], most: int) -> list[str]:
         """Return the logs of at most so many cells that this worker runs now.
@@ -158,43 +177,6 @@ class _Worker:
             done = self._ended.read()
             taken = [log for log in taken if log not in done]
         return taken
-
-
-class EndedLogs:
-    """Which logs the workers of a folder have ended; of each file only what is new is read."""
-
-    def __init__(self, into: Path) -> None:
-        self._shards = into / SHARDS
-        self._read: dict[Path, int] = {}  # bytes of it
-        self._names: set[str] = set()
-
-    def read(self) -> set[str]:
-        """Return the names of the logs that have been measured, of the size they had."""
-        for file in sorted(self._shards.glob(f"*/{ENDED}")):
-            with file.open("rb") as opened:
-                opened.seek(self._read.get(file, 0))
-                text = opened.read()
-            whole = text[: text.rfind(b"\n") + 1]  # what follows is cut, or being written
-            self._read[file] = self._read.get(file, 0) + len(whole)
-            for line in whole.splitlines():
-                if (log := _whole_log(file, line)) is not None:
-                    self._names.add(log)
-        return self._names
-
-
-def _whole_log(file: Path, line: bytes) -> str | None:
-    """Return the log that a line says is measured, where it is there in its size."""
-    try:
-        row = json.loads(line)
-        if "measured" not in row or row["status"].startswith(INTERRUPTED):
-            return None
-        path = file.parent / "cells" / row["file"]
-        there = path.stat().st_size == row["log"]["bytes"]
-    except FileNotFoundError:
-        return None
-    except (ValueError, KeyError, TypeError) as error:
-        raise TraceError(f"{file}: damaged: {error}") from None
-    return str(row["file"]) if there else None
 
 
 def identity_of(prepared: Prepared) -> dict[str, Any]:
@@ -265,14 +247,9 @@ def _directory(into: Path, part: tuple[int, int] | None) -> Path:
     raise UsageError(f"{shards}: a thousand workers of one name")
 
 
-def ended_in(into: Path) -> dict[str, list[tuple[Path, EndedCell]]]:
-    """Return the cells that ended, by the names of their logs, each with the shards it is in."""
-    from .cell_outcome import ended_cells
-
-    found: dict[str, list[tuple[Path, EndedCell]]] = {}
-    for shard in shards_in(into):
-        for name, one in ended_cells(shard).items():
-            interrupted = one.outcome.status.startswith(INTERRUPTED)
-            if one.measured and not interrupted and one.outcome.log is not None:
-                found.setdefault(name, []).append((shard, one))
-    return found
+def link(log: Path, path: Path) -> None:
+    """Give a log another name, which takes no room; where a file system has no links, copy it."""
+    try:
+        os.link(log, path)
+    except OSError:
+        shutil.copyfile(log, path)

@@ -112,11 +112,14 @@ class Trace:
         lines += [f"  without {topic}: {why}" for topic, why in self.absent.items()]
         return "\n".join(lines)
 
-    def verify(self) -> None:
-        """Raise TraceError unless every byte of the log is as it was written.
+    def _repr_html_(self) -> str:
+        """Return the log as a notebook shows it."""
+        from lavendersim.trace.shown_log import html_of  # late: reading needs none of it
 
-        The first column that is read of a log asks for it too.
-        """
+        return html_of(self)
+
+    def verify(self) -> None:
+        """Raise TraceError unless every byte is as written; the first column read asks, too."""
         self._source.verify()
 
     @property
@@ -320,10 +323,7 @@ class Trace:
                 yield decode.decode_contacts(chunk, fields, stride, frame)
 
     def table(self, name: str) -> Table:
-        """Return `step`, `pose`, `velocity` or `contact` for Arrow, pandas, polars or DuckDB.
-
-        UsageError for another name, and where the log has no such topic.
-        """
+        """Return `step`, `pose`, `velocity` or `contact` for Arrow; UsageError without it."""
         from lavendersim.trace.tables import table_of  # late: reading needs no Arrow
 
         return table_of(self, name)

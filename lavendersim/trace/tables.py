@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from lavendersim.trace.reader import Trace
 
 Parts = Callable[[], Iterator[tuple[Any, Any]]]  # steps (n,), and numbers (n, bodies, k) of them
+TOPICS: Final = {"step": "/step", "pose": "/tf", "velocity": "/velocities", "contact": "/contacts"}
 BODIES: Final = ("body_a", "body_b")  # of a contact, by name
 _TIME: Final = Field("time", "f8", "simulation time", "s")
 _STEP: Final = Field("step", "i8", "index of the step; 0 is the initial state")
@@ -41,6 +42,12 @@ def table_of(trace: Trace, name: str) -> Table:
     return TABLES[name](trace)
 
 
+def _check_topic(trace: Trace, name: str) -> None:
+    """Raise UsageError where the log has nothing of a table."""
+    if not trace.has(TOPICS[name]):
+        raise UsageError(trace.why_not(TOPICS[name]))
+
+
 def _step(trace: Trace) -> Table:
     meanings = {column.name: column.meaning for column in STEP_COLUMNS}
     fields = [
@@ -57,8 +64,7 @@ def _step(trace: Trace) -> Table:
 
 
 def _contact(trace: Trace) -> Table:
-    if not trace.has("/contacts"):
-        raise UsageError(trace.why_not("/contacts"))
+    _check_topic(trace, "contact")
     first: Any = next(trace.recorded_contacts_in_parts(), None)
     columns = first.dtype if first is not None else np.dtype([("step", "i8"), ("time", "f8")])
     names = columns.names or ()
@@ -79,14 +85,12 @@ def _of_contact(name: str, kind: str, bodies: list[str]) -> Field:
 
 
 def _pose(trace: Trace) -> Table:
-    if not trace.has("/tf"):
-        raise UsageError(trace.why_not("/tf"))
+    _check_topic(trace, "pose")
     return _of_bodies(trace, "pose", trace.poses_in_parts, _POSE)
 
 
 def _velocity(trace: Trace) -> Table:
-    if not trace.has("/velocities"):
-        raise UsageError(trace.why_not("/velocities"))
+    _check_topic(trace, "velocity")
     return _of_bodies(trace, "velocity", trace.velocities_in_parts, _VELOCITY)
 
 

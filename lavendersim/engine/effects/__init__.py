@@ -119,6 +119,7 @@ def made_once(spec: Spec, hook: str, *others: Any) -> tuple[bool, Any]:
     return False, None
 
 
+@lru_cache(maxsize=4096)  # asked for every engine of a sweep
 def has_hook(spec: Spec, hook: str) -> bool:
     """Return whether some effect of `spec` has a hook; nothing is made."""
     return any(getattr(effect.hooks, hook) is not None for effect in effects_of(spec))

@@ -8,8 +8,9 @@ one: links followed, it stands below the nearest folder above the config that ha
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 from lavendersim.errors import UsageError
 from lavendersim.experiment.inheritance.merge import merged
@@ -27,8 +28,16 @@ PROJECT: Final = (".git", "pyproject.toml")  # what the uppermost folder of a pr
 SUFFIXES: Final = (".yaml", ".yml")
 
 
-def with_parents(root: Node, path: Path, name: str, report: Report) -> tuple[Node, str] | None:
-    """Return the tree over those of all files that it extends, and its text; None without one.
+class Whole(NamedTuple):
+    """A config over those that it extends."""
+
+    tree: Node
+    text: str
+    files: Mapping[str, Path]  # it and its parents, by what messages call them; it comes first
+
+
+def with_parents(root: Node, path: Path, name: str, report: Report) -> Whole | None:
+    """Return the tree over those of all files that it extends; None without one.
 
     name: of the file in messages, by which those of its parents are found and called, too. What is
     wrong with a parent is noted at its place in that file, and what is wrong with naming it at
@@ -42,7 +51,7 @@ def with_parents(root: Node, path: Path, name: str, report: Report) -> tuple[Nod
     while (here := trees[-1].get(EXTENDS)) and here.content is not None:
         parent = _parent(here, (chain, names, project), report)
         if parent is None:
-            return root, ""
+            return Whole(root, "", {})
         trees.append(parent)
     tree = _without(trees[-1])
     for child in reversed(trees[:-1]):
@@ -51,7 +60,7 @@ def with_parents(root: Node, path: Path, name: str, report: Report) -> tuple[Nod
     text = f"# {' '.join(files.split())}: merged, the first over those that it extends.\n"
     text += as_yaml(tree.data)
     _check_size(text, named.mark, report)
-    return tree, text
+    return Whole(tree, text, dict(zip(names, chain, strict=True)))
 
 
 def project_of(path: Path) -> Path:

@@ -13,7 +13,7 @@ FILE: Final = "measures.py"  # beside a config
 
 
 class FromFile(Measure):
-    """What a function of `measures.py`, beside the config, returns.
+    """What a function of a file `measures.py` returns.
 
     A run writes the kinds of such a file in this form; a config names them as it does all others.
     """
@@ -23,6 +23,7 @@ class FromFile(Measure):
     SOURCES: ClassVar[dict[str, str]] = {}
 
     kind: Literal["from_file"]
+    file: str = Field(default=FILE, min_length=1, description="from the folder of the config")
     function: str = Field(min_length=1, description="the kind that the file registers")
     sha256: str = Field(min_length=1, description="of the file's bytes, in hexadecimal digits")
     meaning: str = Field(default="", description="the first sentence of the function's docstring")

@@ -30,7 +30,7 @@ def grafted(tmp_path: Path, measure: str) -> tuple[Node | None, list[str], list[
     report = Report("f")
     root = parse(text.encode(), report)
     assert root is not None
-    found = with_own_measures(root, tmp_path / "f.yaml", report)
+    found = with_own_measures(root, {"f": tmp_path / "f.yaml"}, report)
     said = [str(defect).removeprefix("f:") for defect in report.defects]
     return (None if found is None else found[0]), said, places
 
@@ -71,11 +71,11 @@ def test_the_file_is_not_run_where_no_kind_of_it_is_named(tmp_path: Path) -> Non
     (tmp_path / "measures.py").write_text("raise SystemExit('run')\n")
     root = parse(b"measure: {p: {kind: peak_force, body: ball}}", Report("f"))
     assert root is not None
-    assert with_own_measures(root, tmp_path / "f.yaml", Report("f")) is None
+    assert with_own_measures(root, {"f": tmp_path / "f.yaml"}, Report("f")) is None
     (tmp_path / "measures.py").unlink()
     named = parse(b"measure: {p: {kind: highest}}", Report("f"))
     assert named is not None
-    assert with_own_measures(named, tmp_path / "f.yaml", Report("f")) is None
+    assert with_own_measures(named, {"f": tmp_path / "f.yaml"}, Report("f")) is None
 
 
 def test_keys_of_every_measure_stay_beside_the_kind(tmp_path: Path) -> None:

@@ -79,10 +79,39 @@ def test_dask_gives_the_cells_of_a_killed_worker_to_others(cluster: Any, tmp_pat
 
     killer = Thread(target=kill, daemon=True)
     killer.start()
+    ended: list[tuple[int, int]] = []
+    progress = Progress(cell_done=lambda done, total: ended.append((done, total)))
     with Client(cluster, set_as_default=False) as client:
-        found = run(config, runs, executor=client.get_executor(pure=False))
+        found = run(config, runs, progress=progress, executor=client.get_executor(pure=False))
     killer.join()
+    assert ended == [(done, 40) for done in range(1, 41)]  # every cell once
     assert contents(found.run) == whole
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does")
+def test_the_command_loses_no_cell_of_a_killed_worker(cluster: Any, tmp_path: Path) -> None:
+    config = write(tmp_path, MANY.partition("expect:")[0])
+    whole = contents(run(config, tmp_path / "whole").run)
+    runs = tmp_path / "runs"
+    command = [sys.executable, "-m", "lavender_cli.main", "run", config, "--runs", runs]
+    worker = next(iter(cluster.workers.values())).pid
+    process = subprocess.Popen(
+        [*command, "--dask", cluster.scheduler_address],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while process.poll() is None and len(list(runs.glob("*/cells/[!.]*"))) < 3:
+        time.sleep(0.005)
+    os.kill(worker, signal.SIGKILL)
+    was_running = process.poll() is None
+    said = process.communicate()[1]
+    assert process.returncode == 0, said
+    assert was_running, "the run ended before its worker was killed"
+    # Each log is of one cell, and each cell has one.
+    found = Run((runs / "latest").resolve())
+    assert len({cell.path for cell in found.cells}) == len(list(found.path.glob("cells/*"))) == 40
+    assert contents(found) == whole
 
 
 def test_workers_of_dask_take_measures_of_a_file_for_a_config_that_extends_another(

@@ -1,0 +1,111 @@
+"""Which cells the workers of a folder have ended, by what each notes beside its logs.
+
+    DIR/shards/*/ended.jsonl    two lines a cell: its log is closed; it is measured
+
+A cell is done when it is measured. One whose log is closed, complete and whole is only to be
+measured, by whoever goes on: its worker was killed in between.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from lavendersim.errors import TraceError
+from lavendersim.trace.whole import INTERRUPTED
+
+from .leases import SHARDS
+from .run_index import ENDED
+
+if TYPE_CHECKING:
+    from .cell_outcome import CellOutcome, EndedCell
+
+COMPLETE: Final = "complete"
+
+
+class EndedLogs:
+    """What the workers of a folder have ended; of each file only what is new is read."""
+
+    def __init__(self, into: Path) -> None:
+        self._shards = into / SHARDS
+        self._read: dict[Path, int] = {}  # bytes of it
+        self._names: set[str] = set()
+        self._closed: dict[str, tuple[Path, Mapping[str, Any]]] = {}  # shards and lines, by logs
+
+    def read(self) -> set[str]:
+        """Return the names of the logs that have been measured, of the size they had."""
+        for file in sorted(self._shards.glob(f"*/{ENDED}")):
+            with file.open("rb") as opened:
+                opened.seek(self._read.get(file, 0))
+                text = opened.read()
+            whole = text[: text.rfind(b"\n") + 1]  # what follows is cut, or being written
+            self._read[file] = self._read.get(file, 0) + len(whole)
+            for line in whole.splitlines():
+                self._note(file, line)
+        return self._names
+
+    def closed(self, log: str) -> tuple[Path, CellOutcome] | None:
+        """Return the file and the outcome of a cell that was not measured though it is whole.
+
+        log: its name. None where it has to be run.
+        """
+        from .cell_outcome import ended_of
+
+        shard, row = self._closed.get(log, (None, None))
+        if shard is None or row is None or log in self._names:
+            return None
+        path = shard / "cells" / log
+        try:
+            outcome = ended_of(row).outcome
+        except (ValueError, KeyError, TypeError) as error:
+            raise TraceError(f"{shard / ENDED}: damaged: {error}") from None
+        return (path, outcome) if is_whole(path, outcome) else None
+
+    def _note(self, file: Path, line: bytes) -> None:
+        try:
+            row = json.loads(line)
+            if "measured" not in row:
+                if row["status"] == COMPLETE and "outcome" in row:
+                    self._closed[str(row["file"])] = file.parent, row
+            elif not row["status"].startswith(INTERRUPTED):
+                path = file.parent / "cells" / row["file"]
+                if path.stat().st_size == row["log"]["bytes"]:
+                    self._names.add(str(row["file"]))
+        except FileNotFoundError:
+            pass
+        except (ValueError, KeyError, TypeError) as error:
+            raise TraceError(f"{file}: damaged: {error}") from None
+
+
+def is_whole(path: Path, outcome: CellOutcome) -> bool:
+    """Whether a log is byte for byte the one that was closed."""
+    from lavendersim.trace import ExpectedLog, open_trace
+
+    try:
+        open_trace(path, expected=ExpectedLog(digest=outcome.log)).verify()
+    except (TraceError, OSError):
+        return False
+    return True
+
+
+def ended_in(shards: Sequence[Path], unmeasured: bool) -> dict[str, list[tuple[Path, EndedCell]]]:
+    """Return the cells that ended, by the names of their logs, each with the shards it is in.
+
+    unmeasured: with those that completed and were not measured, behind others of the same cell.
+    """
+    from .cell_outcome import ended_cells
+
+    found: dict[str, list[tuple[Path, EndedCell]]] = {}
+    for shard in shards:
+        for name, one in ended_cells(shard).items():
+            status = one.outcome.status
+            ended = not status.startswith(INTERRUPTED) if one.measured else status == COMPLETE
+            if ended and (one.measured or unmeasured) and one.outcome.log is not None:
+                found.setdefault(name, []).append((shard, one))
+    return {name: sorted(ones, key=_is_unmeasured) for name, ones in found.items()}
+
+
+def _is_unmeasured(one: tuple[Path, EndedCell]) -> bool:
+    return not one[1].measured
