@@ -22,7 +22,7 @@ from shared_runs import GRAVITY, States, config, flow, plane, run_scenes
 
 FRICTION = 0.8
 SLOP = 1e-7  # [m], the default
-RATES = (240, 1000)  # steps a second
+RATES = (60, 240, 1000)  # steps a second
 TILTS = (5, 20, 40)  # [degree]
 R, T = 0.1, 0.02
 DURATION = 0.4
