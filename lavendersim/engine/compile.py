@@ -166,3 +166,29 @@ def chain(kernels: Sequence[Any], spec: Spec) -> Any:
         tail(*arguments)
 
     return kernel(both, spec)
+
+
+def either(kernels: Sequence[Any], spec: Spec) -> Any:
+    """One kernel that returns whether any of `kernels` does; one at least."""
+    head = kernels[0]
+    if len(kernels) == 1:
+        return head
+    tail = either(kernels[1:], spec)
+
+    def any_of(*arguments):
+        return head(*arguments) or tail(*arguments)
+
+    return kernel(any_of, spec)
+
+
+def greatest(kernels: Sequence[Any], spec: Spec) -> Any:
+    """One kernel that returns the greatest number of those of `kernels`, one at least."""
+    head = kernels[0]
+    if len(kernels) == 1:
+        return head
+    tail = greatest(kernels[1:], spec)
+
+    def greatest_of(*arguments):
+        return max(head(*arguments), tail(*arguments))
+
+    return kernel(greatest_of, spec)

@@ -10,9 +10,9 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from .compile import kernel
+from .compile import either, greatest, kernel
 from .contact import make_apply_start
-from .effects import has_hook, made_once
+from .effects import has_hook, made_by, made_once
 from .midpoint_geometry import (
     make_keep_start,
     make_look,
@@ -71,6 +71,11 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     forget_history = make_forget_history(spec)
     residual, mix_velocities = make_residual(spec), make_mix_velocities(spec)
     beside = has_hook(spec, "act_beside")
+    differing, noting = made_by(spec, "differs_midway"), made_by(spec, "note_middle")
+    differs, notes = bool(differing), bool(noting)
+    differs_midway: Any = either(differing, spec) if differs else None
+    note_middle: Any = greatest(noting, spec) if notes else None
+    acts_midway, act_midway = made_once(spec, "act_midway")
 
     def has_impact(contacts, count):
         found = False
@@ -135,7 +140,10 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         slip_turns = False
         if friction:
             slip_turns = begin_slip(contacts, count, velocities, motion)
-        if not (slip_turns or is_turning(contacts, count, bodies, motion, params)):
+        changes = slip_turns or is_turning(contacts, count, bodies, motion, params)
+        if differs:
+            changes = changes or differs_midway(state, count, params)
+        if not changes:
             return False
         for i in range(bodies.shape[0]):
             poses[i] = bodies[i]
@@ -152,7 +160,12 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             columns = mix_velocities(bodies, velocities, rounds, columns)
             unturned = stand_midway(bodies, velocities, motion, lead, poses, params.dt)
             look(state, count, poses, workspace)
+            changed = 0.0
+            if notes:
+                changed = note_middle(bodies, velocities, lead, True, params)
             restore(velocities, free, lead, motion)
+            if acts_midway:
+                act_midway(bodies, poses, velocities)
             if twists:
                 twist_midway(bodies, poses, velocities)
                 note_solved(bodies, velocities)
@@ -182,6 +195,8 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 if acts(contact):
                     apply_start(contact, velocities[contact.a], velocities[contact.b])
             missed, _ = residual(contacts, count, velocities)
+            if notes:
+                missed = max(missed, changed)
             forget_history(counters, log.residual)
             solve(system, workspace.solver, params, counters, log.residual)
             sweeps += counters.sweeps
@@ -234,6 +249,8 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             counters.sweeps += sweeps
             return False
         counters.sweeps = sweeps
+        if notes:
+            note_middle(bodies, velocities, lead, False, params)
         for c in range(count):
             contact = contacts[c]
             if acts(contact):

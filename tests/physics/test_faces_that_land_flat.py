@@ -22,7 +22,7 @@ from shared_runs import GRAVITY, States, config, flow, plane, run_scenes
 
 FRICTION = 0.8
 SLOP = 1e-7  # [m], the default
-RATES = (240, 1000)  # steps a second
+RATES = (60, 240, 1000)  # steps a second
 TILTS = (5, 20, 40)  # [degree]
 R, T = 0.1, 0.02
 DURATION = 0.4
@@ -120,3 +120,15 @@ def test_what_lands_on_a_face_stops_at_once(
     assert energy[fastest] > 0.02  # it has fallen over
     # The impact is in the step after the fastest state, or in the next one.
     assert energy[fastest + 2 :].max() < GRAVITY * 10.0 * SLOP
+
+
+@pytest.mark.parametrize("tilt", TILTS)
+@pytest.mark.parametrize("name", FACES)
+def test_an_edge_that_is_deep_by_how_far_a_step_turns_is_no_overlap(
+    runs: dict[str, States], name: str, tilt: int
+) -> None:
+    """A coin's is 51 um deep after turns by 0.16 rad a step; impacts have their order all the same.
+
+    Finer steps of a coin may have more impacts, of points of its rim, than a step may have parts.
+    """
+    assert runs[f"{name} {tilt} {RATES[0]}"].step["unordered"].max() == 0

@@ -7,6 +7,9 @@ With `semi_implicit_euler`, of order 1; v has the other forces of the step:
 With `midpoint` of order 2: the rate is that of the middle, and exp(-x) is Pade's (0, 2),
     x = h (c1 + c2 |S_h/2((v_0 + v)/2)|),   v_0 as the step begins
     v' = (v_0 + (1 + x/2) (v - v_0)) / (1 + x + x^2/2),   and so omega'
+Of a body that contacts push, v is known once they are solved. Where they are solved at the middle
+of the step (`contact_midpoint`) v and v' have their impulses, and drag is that of both ends
+(`drag_by_mean`); elsewhere impulses are added to v', of order 1.
 What it changes of the velocity along a contact is known to impacts at their time: after one it is
 that of the new velocity.
 Explicit steps overshoot rest where x exceeds 1; these come to rest for any dt. In both a fall ends
@@ -76,7 +79,7 @@ def make_start_step(spec):
 def make(spec):
     """Return `kernel(body, velocity, params)`."""
     drag = _make_second_order(spec) if step_terms(spec).mean_flight else _make_first_order(spec)
-    if not step_terms(spec).timed_impacts:
+    if not (step_terms(spec).timed_impacts or step_terms(spec).centred):
         return drag
     turns = step_terms(spec).turns
 
@@ -93,6 +96,27 @@ def make(spec):
             body.slowed_wz = velocity.wz - wz
 
     return kernel(noted_drag, spec)
+
+
+def make_changes(spec):
+    """Return `kernel(state, count, params) -> whether` contacts change what drag does."""
+    from ..drag_by_mean import make_differs_midway
+
+    return make_differs_midway(spec)
+
+
+def make_note(spec):
+    """Return `kernel(bodies, velocities, lead, midway, params) -> change`: drag by both ends."""
+    from ..drag_by_mean import make_note_middle
+
+    return make_note_middle(spec)
+
+
+def make_act(spec):
+    """Return `kernel(bodies, poses, velocities)`: velocities get that."""
+    from ..drag_by_mean import make_act_midway
+
+    return make_act_midway(spec)
 
 
 def make_slowed_n(spec):
@@ -217,11 +241,18 @@ EFFECT = Effect(
             ("drag_angular", "f8"),  # c [N m s]
             # velocities that the step begins with [m/s], [rad/s]
             *[(f"drag_{k}{axis}", "f8") for k in "vw" for axis in "xyz"],
-            # what drag changes of them in the step, where impacts have a time
+            # what drag changes of them in the step, where impacts have a time or contacts a middle
             *[(f"slowed_{k}{axis}", "f8") for k in "vw" for axis in "xyz"],
         ],
         contact_with=contact_fields,
     ),
     body_values=body_values,
-    hooks=Hooks(start_step=make_start_step, accelerate=make, slowed_n=make_slowed_n),
+    hooks=Hooks(
+        start_step=make_start_step,
+        accelerate=make,
+        slowed_n=make_slowed_n,
+        differs_midway=make_changes,
+        note_middle=make_note,
+        act_midway=make_act,
+    ),
 )

@@ -72,7 +72,7 @@ class Fields:
 # Hooks that several effects may have.
 CHAINED: Final = (
     *("drive", "end_part", "start_step", "accelerate", "prepare", "capture", "preload"),
-    *("contact_row", "step_row", "pushes"),
+    *("contact_row", "step_row", "pushes", "differs_midway", "note_middle"),
 )
 
 
@@ -96,6 +96,11 @@ class Hooks:
     contact_row: Maker | None = None  # (out, contact, va, vb): fills the columns of a contact
     step_row: Maker | None = None  # (row, bodies, counters): fills the columns of a step
     pushes: Maker | None = None  # (body) -> whether it does, so that the body may not sleep
+    differs_midway: Maker | None = None  # (state, count, params) -> whether forces at the middle do
+    note_middle: Maker | None = (
+        None  # (bodies, velocities, lead, midway, params), by the last solve
+    )
+    act_midway: Maker | None = None  # (bodies, poses, velocities), in a pass, before its solve
 
     prescribe: Maker | None = None  # (body, velocity): a kinematic body's, when forces act
     measure_speeds: Maker | None = None  # (bodies, velocities), before forces act

@@ -96,6 +96,7 @@ def make_order(spec: Spec) -> Any:
         NEVER,
         OVERLAP,
         make_approach,
+        make_depth,
         make_expect,
     )
     from ..flush_contacts import make_drop_flush
@@ -105,7 +106,7 @@ def make_order(spec: Spec) -> Any:
     from ..row_terms import row_terms
     from . import made_once
 
-    expect = make_expect(spec)
+    expect, depth = make_expect(spec), make_depth(spec)
     approach, foresee, follow = make_approach(spec), make_foresee(spec), make_follow(spec)
     locate, drop_flush = make_locate(spec), make_drop_flush(spec)
     mark_impact, keep_present = make_mark_impact(spec), make_keep_present(spec)
@@ -182,7 +183,9 @@ def make_order(spec: Spec) -> Any:
                     continue
             if contact.phi <= TOUCHING:
                 touching += 1
-                deep = contact.phi < -OVERLAP
+                deep = False
+                if contact.phi < -OVERLAP:
+                    deep = contact.phi < -depth(contact, bodies, motion, params)
                 if springs:
                     deep = deep and state.pairs[contact.pair].compliance == 0.0
                 if ropes:  # too long by what its turn left: nothing is inside of anything

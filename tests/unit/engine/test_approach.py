@@ -186,3 +186,23 @@ def test_ends_of_a_rope_that_pass_each_other_go_apart(rng) -> None:
     motion = [one_row(**vector_fields("v", v[i]), **vector_fields("w", w[i])) for i in (0, 1)]
     kernel = interpreted(approach.make_gap_acceleration_of_rope(TURNS))
     assert kernel(*ends, bodies, motion) == pytest.approx(expected, rel=1e-5)
+
+
+def test_an_edge_is_as_deep_as_the_projection_leaves_what_the_mean_velocity_cuts_short(rng) -> None:
+    """A point at arm r goes r (a - a^3/8) along its chord by the mean, which has r (a - a^3/24).
+
+    Of r a^3/12 a step the projection takes a fifth of the depth, by default: 5/12 r a^3 is left.
+    """
+    _, contact, bodies, motion = scene_of(rng)
+    depth = interpreted(approach.make_depth(TURNS))
+    spin = np.linalg.norm(vector(motion[contact.b], "w") - vector(motion[contact.a], "w"))
+    least = min(bodies[k].bound for k in (contact.a, contact.b))
+    dt = 0.3 / spin
+    found = depth(contact, bodies, motion, one_row(timestep=dt))
+    assert 5.0 / 12.0 * least * 0.3**3 < found < 0.6 * least * 0.3**3
+    bodies[contact.a].shape = PLANE
+    found = depth(contact, bodies, motion, one_row(timestep=dt))
+    assert found == pytest.approx(approach.CUT_SHORT * bodies[contact.b].bound * 0.3**3, rel=1e-12)
+    assert depth(contact, bodies, motion, one_row(timestep=1e-3 * dt)) == approach.OVERLAP
+    still = interpreted(approach.make_depth(STILL))
+    assert still(contact, bodies, motion, one_row(timestep=dt)) == approach.OVERLAP

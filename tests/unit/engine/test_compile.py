@@ -13,6 +13,8 @@ from numba.core.errors import TypingError
 from lavendersim.engine.compile import (
     compiling,
     composing,
+    either,
+    greatest,
     inner,
     kernel,
     naming,
@@ -171,3 +173,23 @@ def test_kernels_that_are_named_alone_are_plain_functions_and_are_given_to_nobod
     assert composed == first
     with naming():
         assert make(spec) is one
+
+
+@pytest.mark.parametrize("numbers", [(3.0,), (1.0, 2.0), (-1.0, -5.0, -2.0)])
+def test_kernels_of_several_effects_answer_together(numbers: tuple[float, ...]) -> None:
+    def constant(number: float) -> Any:
+        def scaled_by(x):
+            return number * x
+
+        return kernel(scaled_by, Spec())
+
+    def above(number: float) -> Any:
+        def is_above(x):
+            return number > x
+
+        return kernel(is_above, Spec())
+
+    with compiling():
+        assert greatest([constant(n) for n in numbers], Spec())(2.0) == 2.0 * max(numbers)
+        for bound in (-10.0, -1.5, 1.5, 10.0):
+            assert either([above(n) for n in numbers], Spec())(bound) == (max(numbers) > bound)
