@@ -163,6 +163,31 @@ def test_what_is_removed_neither_moves_nor_touches(monkeypatch: pytest.MonkeyPat
     assert "immovable: ball is removed, and moved" in broken(tree)
 
 
+def test_what_is_kinematic_keeps_its_velocity(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the run ends with a state that is no number: what is kinematic is fixed, too."""
+    tree = _fall()
+    tree["scene"]["bodies"]["lift"] = {
+        "shape": {"kind": "sphere", "radius": 0.1}, "position": [9.0, 0.0, 0.5], "kinematic": True,
+        "velocity": [0.0, 0.0, 1.0], "angular_velocity": [0.0, 0.5, 0.0],
+    }  # fmt: skip
+    assert broken(tree) == []
+
+    def bent(*arguments: Any, by_step: bool = False) -> Any:
+        ended = run(*arguments, by_step=by_step)
+        ended.rows.pose[3, 2, 11] += 1e-9
+        return ended
+
+    with monkeypatch.context() as patch:
+        patch.setattr("fuzz_laws.run", bent)
+        assert "immovable: lift is kinematic, and its velocity changed" in broken(tree)
+    tree["scene"]["bodies"]["ball"]["mass"] = 1e-3
+    push = {"body": "ball", "from": 0.05, "to": 0.1, "force": [1e307, 0.0, 0.0]}
+    tree["scene"]["forces"] = [push | {"torque": [0.0, 0.0, 0.0]}]
+    assert broken(tree) == []
+    experiment, spec = loaded(tree)
+    assert run(experiment.cells()[0].config, spec, 24).said
+
+
 def test_a_mass_that_stands_as_a_number_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """A force, pushing at both ends of the unit, that is not proportional to mass."""
     tree = _fall()
