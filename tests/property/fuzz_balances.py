@@ -1,7 +1,8 @@
 """What each step of any run must balance, by the states before and after it and its contacts.
 
 momentum     m (v_1 - v_0) = (m g + F) dt + sum of impulses, of each body that no drag, no spring
-             and no varying force pulls: friction, restitution, cohesion and every solver included
+             and no varying force pulls: friction, restitution, cohesion and every solver included;
+             where a step says that springs were not found, of none that contacts join to one
 penetration  grows in a step by no more than two bodies can move in it, as depth is 1-Lipschitz in
              where bodies stand: |d(x) - d(y)| <= |x - y|
 gap          what pushes touches, or comes to touch by what the two bodies move in the step, or
@@ -131,7 +132,7 @@ def unbalanced(
     if whole < 1:
         return [], []
     steps = steps_of(rows, states, whole)
-    found, judged = _momentum(config, steps) + _gap(config, steps), ["momentum", "gap"]
+    found, judged = _momentum(config, rows, steps) + _gap(config, steps), ["momentum", "gap"]
     if is_calm(config):
         found, judged = found + _energy(config, rows, steps), [*judged, "energy"]
     if not is_anew(config, steps):
@@ -163,24 +164,49 @@ def _pulled(config: CellConfig) -> list[bool]:
     return [name in drawn or any(_drag(body)) for name, body in config.scene.bodies.items()]
 
 
+def _placed(config: CellConfig, rows: Rows, steps: Steps) -> np.ndarray:
+    """Return (k, n) which bodies a step may have placed where springs were not found.
+
+    Such a step says so, and takes velocities from its union (`engine/spring_contacts.py`): bodies
+    that contacts join to one with a spring.
+    """
+    names = [*config.scene.bodies]
+    sprung = {names.index(name) for one in config.scene.springs for name in (one.a, one.b)}
+    placed = np.zeros(steps.before.mass.shape, dtype=bool)
+    if not sprung:
+        return placed
+    missed = rows.step["spring_not_converged"][1 : len(placed) + 1] > 0
+    for step in np.flatnonzero(missed):
+        own = steps.contact[steps.at == step]
+        union = set(sprung)
+        while True:
+            beside = {int(k) for a, b in zip(own["body_a"], own["body_b"], strict=True)
+                      if a in union or b in union for k in (a, b)}  # fmt: skip
+            if beside <= union:
+                break
+            union |= beside
+        placed[step, [*union]] = True
+    return placed
+
+
 def _drag(body: Any) -> tuple[float, ...]:
     drag = body.drag
     return (drag.linear, drag.quadratic, drag.angular) if drag is not None else ()
 
 
-def _momentum(config: CellConfig, steps: Steps) -> list[str]:
-    before, after, rows = steps.before, steps.after, steps.contact
-    push, gained, size = _impulses(rows), _gained(steps), np.zeros(before.mass.shape)
+def _momentum(config: CellConfig, rows: Rows, steps: Steps) -> list[str]:
+    before, after, contact = steps.before, steps.after, steps.contact
+    push, gained, size = _impulses(contact), _gained(steps), np.zeros(before.mass.shape)
     for column in ("body_a", "body_b"):
-        place = (steps.at, rows[column])
-        np.add.at(size, place, np.abs(push).sum(axis=1) + np.abs(rows["impulse_n"]))
+        place = (steps.at, contact[column])
+        np.add.at(size, place, np.abs(push).sum(axis=1) + np.abs(contact["impulse_n"]))
     weight = before.mass[..., None] * before.gravity[:, None] + before.force
     weight *= before.dt[:, None, None]
     change = before.mass[..., None] * (after.velocity - before.velocity)
     size += np.abs(weight).sum(axis=2)
     size += before.mass * (np.abs(after.velocity) + np.abs(before.velocity)).sum(axis=2)
     free = (before.mass > 0.0) & (before.asleep == 0) & (after.asleep == 0)
-    free &= ~np.array(_pulled(config))
+    free &= ~np.array(_pulled(config)) & ~_placed(config, rows, steps)
     miss = np.linalg.norm(change - weight - gained, axis=2)
     largest = np.zeros(len(before.dt))
     np.maximum.at(largest, steps.at, np.abs(push).sum(axis=1))
