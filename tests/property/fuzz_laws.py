@@ -262,7 +262,7 @@ def _contacts(run: Ended, cone: str) -> list[str]:
     if "angular_impulse_t1" in names:
         roll = np.hypot(rows["angular_impulse_t1"], rows["angular_impulse_t2"])
         limited.append(("rolling friction", roll, rows["rolling_friction"]))
-    if "friction_11" in names:
+    if "friction_11" in names and cone != "pyramid":  # which has no ellipse: no grain is drawn
         limited.append(("friction", _in_ellipse(rows), np.ones(len(rows))))
     for name, impulse, coefficient in limited:
         most = coefficient * push
