@@ -106,7 +106,20 @@ class Steps(NamedTuple):
     reach: np.ndarray  # (k, n) [m] no point of a body is farther from where it was a step before
 
 
-def steps_of(rows: Rows, states: list[tuple[Tables, Tables]], whole: int) -> Steps:
+def _levers(config: CellConfig) -> np.ndarray:
+    """Return how far from each body's centre ropes are tied to it [m]: farther than it reaches."""
+    names = [*config.scene.bodies]
+    levers = np.zeros(len(names))
+    for one in config.scene.connections.values():
+        for name, point in zip(one.between, getattr(one, "points", None) or (), strict=False):
+            k = names.index(name)
+            levers[k] = max(levers[k], float(np.linalg.norm(point)))
+    return levers
+
+
+def steps_of(
+    config: CellConfig, rows: Rows, states: list[tuple[Tables, Tables]], whole: int
+) -> Steps:
     """Return the first `whole` steps of a run."""
     before, after = (state_of(list(tables)) for tables in zip(*states[:whole], strict=True))
     contact = rows.contact[(rows.contact["step"] >= 1) & (rows.contact["step"] <= whole)]
@@ -114,11 +127,12 @@ def steps_of(rows: Rows, states: list[tuple[Tables, Tables]], whole: int) -> Ste
     way = np.linalg.norm(np.diff(poses[:, :, :3], axis=0), axis=2)
     cosine = np.abs((poses[1:, :, 3:7] * poses[:-1, :, 3:7]).sum(axis=2))
     turn = 2.0 * np.arccos(np.minimum(cosine, 1.0))
+    bound = np.maximum(before.bound, _levers(config))
     flown = [
-        np.linalg.norm(s.velocity, axis=2) + s.bound * np.linalg.norm(s.spin, axis=2)
+        np.linalg.norm(s.velocity, axis=2) + bound * np.linalg.norm(s.spin, axis=2)
         for s in (before, after)
     ]
-    reach = before.dt[:, None] * (flown[0] + flown[1]) + way + before.bound * turn
+    reach = before.dt[:, None] * (flown[0] + flown[1]) + way + bound * turn
     return Steps(before, after, contact, contact["step"] - 1, reach)
 
 
@@ -131,7 +145,7 @@ def unbalanced(
     """
     if whole < 1:
         return [], []
-    steps = steps_of(rows, states, whole)
+    steps = steps_of(config, rows, states, whole)
     found, judged = _momentum(config, rows, steps) + _gap(config, steps), ["momentum", "gap"]
     if is_calm(config):
         found, judged = found + _energy(config, rows, steps), [*judged, "energy"]
