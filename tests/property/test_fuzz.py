@@ -1,6 +1,6 @@
 """Random configs break no law, on the engine with everything and on a drawn one.
 
-`LAVENDER_TEST_FUZZ` draws more than 150 configs; `tests/property/fuzz.py` draws them on more plans.
+`LAVENDER_TEST_FUZZ` draws more than 120 configs; `tests/property/fuzz.py` draws them on more plans.
 """
 
 from __future__ import annotations
@@ -11,17 +11,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fuzz import HEADING, Find, Kept, drawn, drawn_plans, finds, first_config, fuzz, summarised
-from fuzz_laws import ENDLESS, broken, loaded, run
+from fuzz import HEADING, Kept, drawn, drawn_plans, finds, first_config, fuzz, summarised
+from fuzz_laws import broken, loaded, run
 from fuzz_scenes import EVERY, FORCED, FULL, JOINED, NOT_DRAWN, SOLIDS, Drawn
 from idle import compile_together
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS
 
-CONFIGS = int(os.environ.get("LAVENDER_TEST_FUZZ", "150"))
+CONFIGS = int(os.environ.get("LAVENDER_TEST_FUZZ", "120"))
 ENGINES = {"everything": FULL, **{f"drawn {k}": plan for k, plan in enumerate(drawn_plans(1))}}
-SHARE = {"everything": 8, "drawn 0": 2}  # tenths of the configs
+SHARE = {"everything": 2, "drawn 0": 8}  # tenths of the configs: the first are dear
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -36,8 +36,7 @@ def compiled(optimised: None) -> None:
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_random_configs_break_no_law(name: str) -> None:
-    found = finds(ENGINES[name], CONFIGS * SHARE[name] // 10)
-    assert [find.laws for find in found if not _is_slow(find)] == []
+    assert [find.laws for find in finds(ENGINES[name], CONFIGS * SHARE[name] // 10)] == []
 
 
 def test_the_fullest_engine_has_every_effect_and_pair_of_shapes() -> None:
@@ -52,11 +51,6 @@ def test_drawn_engines_differ_in_what_they_leave_out() -> None:
     assert len({repr(plan) for plan in plans}) == 20
     assert len({plan.numerics["solver"] for plan in plans}) >= 5
     assert all(set(plan.effects) < set(FULL.effects) for plan in plans)
-
-
-def _is_slow(find: Find) -> bool:
-    """Whether a step of springs beside contacts takes minutes: a case of docs/hard-cases.md."""
-    return find.laws[0].startswith(ENDLESS) and bool(find.tree["scene"]["springs"])
 
 
 def test_every_effect_is_drawn_or_said_not_to_be() -> None:
