@@ -1,4 +1,4 @@
-"""What drives a drawn scene beside bodies: functions of time, forces, springs, ropes, events.
+"""What drives a drawn scene beside bodies: functions of time, forces, springs, events.
 
 And what holds between two surfaces. Functions take the pen of `fuzz_scenes`, which draws numbers
 and knows what the plan has.
@@ -9,21 +9,21 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from hypothesis import strategies as st
+from lavendersim.engine.effects.joint_models import JOINTS
 
 
 def factor(pen: Any, duration: float, jumps: bool = True) -> dict[str, Any]:
     """Return a function of time of any kind; of a motion none that jumps."""
-    kind = pen.draw(st.sampled_from(("ramp", "sine", "table", *(("pulse",) if jumps else ()))))
+    kind = pen.one_of(("ramp", "sine", "table", *(("pulse",) if jumps else ())))
     begin = 0.7 * duration * pen.share()
     end = begin + duration * pen.share(0.01)
     if kind == "ramp":
         some = {"kind": kind, "rate": pen.signed(-1.0, 2.0), "from": begin}
-        return some | ({"to": end} if pen.draw(st.booleans()) else {})
+        return some | ({"to": end} if pen.coin() else {})
     if kind == "pulse":
         return {"kind": kind, "from": begin, "to": end}
     if kind == "table":
-        values = [pen.signed(-2.0, 1.0) for _ in range(pen.draw(st.integers(2, 4)))]
+        values = [pen.signed(-2.0, 1.0) for _ in range(pen.integer(2, 4))]
         times = [begin + k * (end - begin) for k in range(len(values))]
         return {"kind": kind, "times": times, "values": values}
     return {
@@ -38,10 +38,10 @@ def factor(pen: Any, duration: float, jumps: bool = True) -> dict[str, Any]:
 def motion(pen: Any, duration: float) -> list[dict[str, Any]]:
     """Return where a kinematic body is over time: at most one turn, first, and displacements."""
     made: list[dict[str, Any]] = []
-    if pen.draw(st.booleans()):
+    if pen.coin():
         turn = {"turn": pen.some_vector(-2.0, 0.5), "factor": factor(pen, duration, jumps=False)}
-        made.append(turn | ({"through": pen.vector(1.0)} if pen.draw(st.booleans()) else {}))
-    for _ in range(pen.draw(st.integers(0 if made else 1, 2))):
+        made.append(turn | ({"through": pen.vector(1.0)} if pen.coin() else {}))
+    for _ in range(pen.integer(0 if made else 1, 2)):
         way = pen.some_vector(-3.0, 0.0)
         made.append({"displacement": way, "factor": factor(pen, duration, jumps=False)})
     return made
@@ -55,9 +55,9 @@ def springs(pen: Any, bodies: dict[str, Any], movable: list[str]) -> list[dict[s
     if not pen.has("spring") or len(bodies) < 2:
         return []
     made = []
-    for _ in range(pen.draw(st.integers(1, 2))):
-        one = pen.draw(st.sampled_from(movable))
-        other = pen.draw(st.sampled_from([name for name in bodies if name != one]))
+    for _ in range(pen.integer(1, 2)):
+        one = pen.one_of(movable)
+        other = pen.one_of([name for name in bodies if name != one])
         made.append(
             {
                 "a": one,
@@ -77,14 +77,14 @@ def forces(pen: Any, movable: list[str], duration: float) -> list[dict[str, Any]
         made.append({})
     if pen.has("varying_force"):
         varying: dict[str, Any] = {"factor": factor(pen, duration)}
-        if pen.draw(st.booleans()):
+        if pen.coin():
             varying["point"] = pen.vector(pen.power(-3.0, 0.0))
-        if pen.draw(st.booleans()):
+        if pen.coin():
             varying["frame"] = "body"
         made.append(varying)
     return [
         {
-            "body": pen.draw(st.sampled_from(movable)),
+            "body": pen.one_of(movable),
             "from": 0.5 * duration * pen.share(),
             "to": duration,
             "force": pen.some_vector(-3.0, 4.0),
@@ -95,41 +95,24 @@ def forces(pen: Any, movable: list[str], duration: float) -> list[dict[str, Any]
     ]
 
 
-def ropes(pen: Any, sizes: dict[str, float], movable: list[str]) -> dict[str, Any]:
-    """Return ropes between points of bodies: taut as the run begins, slack, or too short."""
-    if not pen.has("rope") or len(sizes) < 2:
-        return {}
-    made: dict[str, Any] = {}
-    for k in range(pen.draw(st.integers(1, 2))):
-        one = pen.draw(st.sampled_from(movable))
-        other = pen.draw(st.sampled_from([name for name in sizes if name != one]))
-        rope: dict[str, Any] = {
-            "kind": "rope",
-            "between": [one, other],
-            "points": [pen.vector(0.5 * sizes[name]) for name in (one, other)],
-        }
-        if pen.draw(st.booleans()):
-            rope["length"] = pen.power(-2.0, 2.0)
-        if pen.has("restitution"):
-            rope["restitution"] = pen.share()
-        made[f"rope_{k}"] = rope
-    return made
-
-
-def events(pen: Any, bodies: dict[str, Any], movable: list[str], pushed: Any, plan: Any) -> Any:
+def events(
+    pen: Any, bodies: dict[str, Any], movable: list[str], scene: dict[str, Any], plan: Any
+) -> Any:
     """Return sudden changes of bodies, removals, changes of the timestep, of gravity, of surfaces.
 
-    Some happen when a state is come to. pushed: forces, which act to the end: their bodies are not
-    removed.
+    Some happen when a state is come to. Bodies that forces act on, to the end, are not removed;
+    those of joints are not moved.
     """
-    busy = {one["body"] for one in pushed}
+    busy = {one["body"] for one in scene["forces"]}
+    joined = {name for one in scene["connections"].values() if one["kind"] in JOINTS
+              for name in one["between"]}  # fmt: skip
     dt, duration = Fraction(plan["timestep"]), plan["duration"]
     made: list[dict[str, Any]] = []
     gone: dict[str, float] = {}
-    for _ in range(pen.draw(st.integers(0, 3))):
-        at, kind = duration * pen.share(), pen.draw(st.sampled_from((0, 1, 0, 1, *range(2, 9))))
+    for _ in range(pen.integer(0, 3)):
+        at, kind = duration * pen.share(), pen.one_of((0, 1, 0, 1, *range(2, 9)))
         if kind == 0:
-            factor_of_dt = pen.draw(st.sampled_from((Fraction(1, 3), Fraction(1, 2), 2, 5)))
+            factor_of_dt = pen.one_of((Fraction(1, 3), Fraction(1, 2), 2, 5))
             made.append({"at": at, "timestep": str(dt * factor_of_dt)})
             continue
         if kind == 1:
@@ -137,10 +120,10 @@ def events(pen: Any, bodies: dict[str, Any], movable: list[str], pushed: Any, pl
             used = {event.get("body") for event in made}
             free = [name for name in free if name not in used]
             if free:
-                gone[pen.draw(st.sampled_from(free))] = at
+                gone[pen.one_of(free)] = at
                 made.append({"at": at, "body": [*gone][-1], "remove": True})
             continue
-        when = {"at": at} if pen.draw(st.booleans()) else trigger(pen, bodies, movable)
+        when = {"at": at} if pen.coin() else trigger(pen, bodies, movable)
         if kind == 2:
             if pen.has("gravity"):
                 made.append({**when, "gravity": pen.some_vector(-1.0, 2.0)})
@@ -154,18 +137,20 @@ def events(pen: Any, bodies: dict[str, Any], movable: list[str], pushed: Any, pl
             7: {"surface": pen.surface(1.0)},
             8: {"orientation": [1.0, *pen.vector(1.0)]},
         }
+        if kind in (4, 8):
+            there = [name for name in there if name not in joined]
         if there:
-            body = pen.draw(st.sampled_from(there))
+            body = pen.one_of(there)
             made.append({**when, "body": body, **changes[kind]})
     return made
 
 
 def trigger(pen: Any, bodies: dict[str, Any], movable: list[str]) -> dict[str, Any]:
     """Return a state of one body, or of two, that makes an event happen."""
-    kind = pen.draw(st.sampled_from(("touches", "leaves", "faster_than", "slower_than", "above")))
-    body = pen.draw(st.sampled_from(movable))
+    kind = pen.one_of(("touches", "leaves", "faster_than", "slower_than", "above"))
+    body = pen.one_of(movable)
     if kind in ("touches", "leaves"):
-        other = pen.draw(st.sampled_from([name for name in bodies if name != body]))
+        other = pen.one_of([name for name in bodies if name != body])
         return {"when": {kind: [body, other]}}
     if kind == "above":
         return {"when": {"body": body, "along": pen.some_vector(0.0, 0.0), kind: pen.share()}}
@@ -174,7 +159,7 @@ def trigger(pen: Any, bodies: dict[str, Any], movable: list[str]) -> dict[str, A
 
 def paired(pen: Any, bodies: dict[str, Any]) -> dict[str, Any]:
     """Name the surfaces of some bodies, and say what holds between two of them."""
-    named = [name for name in bodies if pen.draw(st.booleans())][:2]
+    named = [name for name in bodies if pen.coin()][:2]
     between = pen.surface(1.0) if len(named) == 2 else {}
     if not between:
         return {}

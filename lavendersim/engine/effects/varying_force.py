@@ -7,6 +7,7 @@ step: of order 2. The work of the step is F . (x_1 - x_0) + (T + r x F) . theta,
 its turn by Cayley's map: what the kinetic energy of a free round body gains, to round-off.
 """
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -17,6 +18,8 @@ from .effect import Balance, Column, Drive, Effect, Fields, Hooks, kernel
 from .time_functions import terms_of
 
 _AXES = "xyz"
+# Real parts of a turn below that are round-off: of more than 1e16 rad the work has no digits.
+LEAST_REAL = 1e-16
 
 
 def forces_of(scene: Any) -> Iterator[Any]:
@@ -160,6 +163,8 @@ def make_end_part(spec):
                 ty = qy * w - qw * y - qz * x + qx * z
                 tz = qz * w - qw * z - qx * y + qy * x
                 turned = body.torque_x * tx + body.torque_y * ty + body.torque_z * tz
+                if abs(real) < LEAST_REAL:
+                    real = math.copysign(LEAST_REAL, real)
                 if turned != 0.0:
                     done += 2.0 * turned / real
             body.worked += done

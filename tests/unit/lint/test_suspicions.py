@@ -24,9 +24,11 @@ MEANT = {
     "hard/control/gain_of_one.yaml",
     "hard/degenerate/same_place.yaml",
     "hard/found/cohesion_of_what_turns.yaml",
+    "hard/found/push_ahead_of_a_stiff_spring.yaml",
     "hard/found/springs_beside_what_gives_way.yaml",
     "hard/found/sweeps_of_a_step_solved_anew.yaml",
     "hard/found/torque_beyond_its_cone.yaml",
+    "hard/found/work_of_a_turn_without_digits.yaml",
     "hard/overlap/pyramid_pressed.yaml",
     "hard/overlap/sheet_of_balls.yaml",
 }
