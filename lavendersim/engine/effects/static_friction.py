@@ -23,7 +23,6 @@ from typing import Annotated
 
 from lavendersim.quantities.quantity import Quantity
 
-from ..compile import inner
 from ..spec import Spec
 from ..step_terms import step_terms
 from .decision import Decision, Facts, PairFacts, by_pair
@@ -119,11 +118,17 @@ def _make_coefficient(spec: Spec) -> Kernel:
     return kernel(coefficient, spec)
 
 
-@inner
-def _resolves(contact, pair, impulse):
-    """Whether a step resolves how friction falls; impulse: along the normal [N s]."""
-    falls = impulse * contact.k_t * (pair.static_friction - pair.friction)
-    return falls <= 2.0 * RESOLVED * pair.stribeck_velocity
+def _make_resolves(spec: Spec) -> Kernel:
+    """Return `kernel(contact, pair, impulse) -> whether` a step resolves how friction falls.
+
+    impulse: along the normal [N s].
+    """
+
+    def resolves(contact, pair, impulse):
+        falls = impulse * contact.k_t * (pair.static_friction - pair.friction)
+        return falls <= 2.0 * RESOLVED * pair.stribeck_velocity
+
+    return kernel(resolves, spec)
 
 
 def make_prepare(spec: Spec) -> Kernel:
@@ -131,7 +136,7 @@ def make_prepare(spec: Spec) -> Kernel:
     from ..vectors import Vec3
 
     slip, coefficient = _make_slip(spec), _make_coefficient(spec)
-    centred = step_terms(spec).centred
+    centred, resolves = step_terms(spec).centred, _make_resolves(spec)
 
     def set_friction(contact, va, vb, pair, params):
         if pair.static_friction > pair.friction and pair.friction > 0.0:
@@ -144,7 +149,7 @@ def make_prepare(spec: Spec) -> Kernel:
             )
             midway = False
             if centred:
-                midway = _resolves(contact, pair, contact.kept_n)
+                midway = resolves(contact, pair, contact.kept_n)
             if midway:
                 one, two = slip(
                     contact,
@@ -171,6 +176,7 @@ def make_differs_midway(spec: Spec) -> Kernel:
     from ..vectors import Vec3
 
     slip, coefficient = _make_slip(spec), _make_coefficient(spec)
+    resolves = _make_resolves(spec)
 
     def differs_midway(state, count, params):
         for c in range(count):
@@ -178,7 +184,7 @@ def make_differs_midway(spec: Spec) -> Kernel:
             falls = pair.static_friction > pair.friction and pair.friction > 0.0
             if not falls or contact.lasts == 0 or contact.lambda_n == 0.0:
                 continue
-            if not _resolves(contact, pair, contact.lambda_n):
+            if not resolves(contact, pair, contact.lambda_n):
                 continue
             va, vb = state.velocities[contact.a], state.velocities[contact.b]
             s_1, s_2 = slip(
