@@ -12,6 +12,7 @@ import pytest
 from hypothesis.internal.conjecture import providers
 
 from tests.drop_config import DROP
+from tests.families_of_plans import ConfigsSharePlans
 
 pytest_plugins = ["pytester"]
 pytest.register_assert_rewrite("tests.marked_config")
@@ -61,9 +62,13 @@ LIGHT = (
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Let files be handed out in the order that is made here, not by their numbers of tests."""
+    """Let files be handed out in the order that is made here, not by their numbers of tests.
+
+    And let shipped configs share plans.
+    """
     if hasattr(config.option, "loadscopereorder"):
         config.option.loadscopereorder = False
+    config.pluginmanager.register(ConfigsSharePlans())
 
 
 def pytest_collection_finish() -> None:
