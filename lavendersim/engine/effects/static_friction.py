@@ -19,7 +19,7 @@ kinetic friction a contact has no tangents to hold it by: a surface with the one
 """
 
 from math import sqrt
-from typing import Annotated
+from typing import Annotated, Any
 
 from lavendersim.quantities.quantity import Quantity
 
@@ -136,7 +136,8 @@ def make_prepare(spec: Spec) -> Kernel:
     from ..vectors import Vec3
 
     slip, coefficient = _make_slip(spec), _make_coefficient(spec)
-    centred, resolves = step_terms(spec).centred, _make_resolves(spec)
+    centred = step_terms(spec).centred
+    resolves: Any = _make_resolves(spec) if centred else None
 
     def set_friction(contact, va, vb, pair, params):
         if pair.static_friction > pair.friction and pair.friction > 0.0:
