@@ -17,7 +17,7 @@ tests/conftest.py registers); `pytest configs`, and everybody else, runs each by
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -79,7 +79,7 @@ def _families() -> tuple[Plan, ...]:
     return tuple(plans)
 
 
-def with_spec_of_familys(plans: Iterable[Plan]) -> list[Plan]:
+def with_specs_of_families(plans: Iterable[Plan]) -> list[Plan]:
     """Return plans of cells with what is compiled for them; one object stays one object."""
     known: dict[int, Plan] = {}
     found = []
@@ -98,11 +98,11 @@ class ConfigsSharePlans:
         """Let the plan of a shipped config be a family's."""
         if not item.path.is_relative_to(CONFIGS) or item.path.is_relative_to(CHAPTER):
             return (yield)
-        from lavendersim.runner import cell_jobs, plans
+        from lavendersim.runner import planning, plans
 
-        def shared_plans(cells: Iterable[Cell]) -> list[Plan]:
-            return with_spec_of_familys(plans.shared_plans(cells))
+        def joined_by_families(parts: Sequence[plans.Decided]) -> list[Plan]:
+            return with_specs_of_families(plans.joined(parts))
 
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(cell_jobs, "shared_plans", shared_plans)
+            patch.setattr(planning, "joined", joined_by_families)
             return (yield)

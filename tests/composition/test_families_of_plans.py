@@ -10,7 +10,7 @@ from lavendersim.experiment import load_experiment
 from lavendersim.pytest_plugin import _is_experiment
 from lavendersim.runner.plans import distinct, shared_plans
 from lavendersim.scene.plan import Plan
-from tests.families_of_plans import CONFIGS, NEVER_ADDED, spec_of_family, with_spec_of_familys
+from tests.families_of_plans import CONFIGS, NEVER_ADDED, spec_of_family, with_specs_of_families
 
 
 def shipped() -> Iterator[Plan]:
@@ -43,7 +43,7 @@ def test_shipped_configs_have_few_plans_with_families(plans: list[Plan]) -> None
 
 def test_cells_of_one_plan_stay_cells_of_one_plan(plans: list[Plan]) -> None:
     one, other = plans[:2]
-    first, again, second = with_spec_of_familys([one, one, other])
+    first, again, second = with_specs_of_families([one, one, other])
     assert first is again
     assert first is not second
     assert (first.choices, first.decisions) == (one.choices, one.decisions)
