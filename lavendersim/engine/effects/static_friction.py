@@ -102,6 +102,22 @@ def _make_slip(spec: Spec) -> Kernel:
     return kernel(slip, spec)
 
 
+def _make_slip_at_start(spec: Spec, slip: Kernel) -> Kernel:
+    """Return `kernel(contact, va, vb) -> (s_1, s_2)` as the step began [m/s]; slip: see above."""
+    from ..vectors import Vec3
+
+    def slip_at_start(contact, va, vb):
+        return slip(
+            contact,
+            Vec3(va.start_vx, va.start_vy, va.start_vz),
+            Vec3(va.start_wx, va.start_wy, va.start_wz),
+            Vec3(vb.start_vx, vb.start_vy, vb.start_vz),
+            Vec3(vb.start_wx, vb.start_wy, vb.start_wz),
+        )
+
+    return kernel(slip_at_start, spec)
+
+
 def _make_coefficient(spec: Spec) -> Kernel:
     """Return `kernel(contact, pair, s_1, s_2) -> mu` of a slip along the tangents [m/s]."""
     from ..row_terms import row_terms
@@ -136,18 +152,13 @@ def make_prepare(spec: Spec) -> Kernel:
     from ..vectors import Vec3
 
     slip, coefficient = _make_slip(spec), _make_coefficient(spec)
+    slip_at_start = _make_slip_at_start(spec, slip)
     centred = step_terms(spec).centred
     resolves: Any = _make_resolves(spec) if centred else None
 
     def set_friction(contact, va, vb, pair, params):
         if pair.static_friction > pair.friction and pair.friction > 0.0:
-            s_1, s_2 = slip(
-                contact,
-                Vec3(va.start_vx, va.start_vy, va.start_vz),
-                Vec3(va.start_wx, va.start_wy, va.start_wz),
-                Vec3(vb.start_vx, vb.start_vy, vb.start_vz),
-                Vec3(vb.start_wx, vb.start_wy, vb.start_wz),
-            )
+            s_1, s_2 = slip_at_start(contact, va, vb)
             midway = False
             if centred:
                 midway = resolves(contact, pair, contact.kept_n)
@@ -177,6 +188,7 @@ def make_differs_midway(spec: Spec) -> Kernel:
     from ..vectors import Vec3
 
     slip, coefficient = _make_slip(spec), _make_coefficient(spec)
+    slip_at_start = _make_slip_at_start(spec, slip)
     resolves = _make_resolves(spec)
 
     def differs_midway(state, count, params):
@@ -188,13 +200,7 @@ def make_differs_midway(spec: Spec) -> Kernel:
             if not resolves(contact, pair, contact.lambda_n):
                 continue
             va, vb = state.velocities[contact.a], state.velocities[contact.b]
-            s_1, s_2 = slip(
-                contact,
-                Vec3(va.start_vx, va.start_vy, va.start_vz),
-                Vec3(va.start_wx, va.start_wy, va.start_wz),
-                Vec3(vb.start_vx, vb.start_vy, vb.start_vz),
-                Vec3(vb.start_wx, vb.start_wy, vb.start_wz),
-            )
+            s_1, s_2 = slip_at_start(contact, va, vb)
             one, two = slip(
                 contact,
                 Vec3(va.vx, va.vy, va.vz),
