@@ -156,39 +156,42 @@ def chain(kernels: Sequence[Any], spec: Spec) -> Any:
             pass
 
         return kernel(nothing, spec)
-    head = kernels[0]
-    if len(kernels) == 1:
-        return head
-    tail = chain(kernels[1:], spec)
-
-    def both(*arguments):
-        head(*arguments)
-        tail(*arguments)
-
-    return kernel(both, spec)
+    return _folded(kernels, spec, _both)
 
 
 def either(kernels: Sequence[Any], spec: Spec) -> Any:
     """One kernel that returns whether any of `kernels` does; one at least."""
-    head = kernels[0]
-    if len(kernels) == 1:
-        return head
-    tail = either(kernels[1:], spec)
-
-    def any_of(*arguments):
-        return head(*arguments) or tail(*arguments)
-
-    return kernel(any_of, spec)
+    return _folded(kernels, spec, _any_of)
 
 
 def greatest(kernels: Sequence[Any], spec: Spec) -> Any:
     """One kernel that returns the greatest number of those of `kernels`, one at least."""
-    head = kernels[0]
-    if len(kernels) == 1:
-        return head
-    tail = greatest(kernels[1:], spec)
+    return _folded(kernels, spec, _greatest_of)
 
+
+def _folded(kernels: Sequence[Any], spec: Spec, of_two: Callable[[Any, Any], Any]) -> Any:
+    """Return the first, with what the others are folded to; of_two: a function that calls two."""
+    head, *others = kernels
+    return kernel(of_two(head, _folded(others, spec, of_two)), spec) if others else head
+
+
+def _both(head: Any, tail: Any) -> Any:
+    def both(*arguments):
+        head(*arguments)
+        tail(*arguments)
+
+    return both
+
+
+def _any_of(head: Any, tail: Any) -> Any:
+    def any_of(*arguments):
+        return head(*arguments) or tail(*arguments)
+
+    return any_of
+
+
+def _greatest_of(head: Any, tail: Any) -> Any:
     def greatest_of(*arguments):
         return max(head(*arguments), tail(*arguments))
 
-    return kernel(greatest_of, spec)
+    return greatest_of
