@@ -20,6 +20,8 @@ from .leases import SHARDS
 from .run_index import ENDED
 
 if TYPE_CHECKING:
+    from lavendersim.trace import Trace
+
     from .cell_outcome import CellOutcome, EndedCell
 
 COMPLETE: Final = "complete"
@@ -61,7 +63,11 @@ class EndedLogs:
             outcome = ended_of(row).outcome
         except (ValueError, KeyError, TypeError) as error:
             raise TraceError(f"{shard / ENDED}: damaged: {error}") from None
-        return (path, outcome) if is_whole(path, outcome) else None
+        try:
+            whole_log(path, outcome)
+        except (TraceError, OSError):
+            return None
+        return path, outcome
 
     def _note(self, file: Path, line: bytes) -> None:
         try:
@@ -79,15 +85,16 @@ class EndedLogs:
             raise TraceError(f"{file}: damaged: {error}") from None
 
 
-def is_whole(path: Path, outcome: CellOutcome) -> bool:
-    """Whether a log is byte for byte the one that was closed."""
+def whole_log(path: Path, outcome: CellOutcome) -> Trace:
+    """Return a log that is byte for byte the one that was closed.
+
+    TraceError where it is not, OSError where it cannot be read.
+    """
     from lavendersim.trace import ExpectedLog, open_trace
 
-    try:
-        open_trace(path, expected=ExpectedLog(digest=outcome.log)).verify()
-    except (TraceError, OSError):
-        return False
-    return True
+    trace = open_trace(path, expected=ExpectedLog(digest=outcome.log))
+    trace.verify()
+    return trace
 
 
 def ended_in(shards: Sequence[Path], unmeasured: bool) -> dict[str, list[tuple[Path, EndedCell]]]:

@@ -17,7 +17,7 @@ from lavendersim.config_options import ConfigOptions
 from lavendersim.errors import TraceError, UsageError
 from lavendersim.experiment import Experiment, load_experiment_text
 
-from .ended_logs import ended_in
+from .ended_logs import ended_in, whole_log
 from .experiment_run import Finished, complete, make_directory
 from .leases import Leases
 from .progress import Progress
@@ -96,8 +96,6 @@ def _whole(
     ended: Mapping[str, Sequence[tuple[Path, EndedCell]]], logs: Sequence[str]
 ) -> tuple[dict[str, tuple[Path, EndedCell]], list[str]]:
     """Return one whole log of each cell, and a sentence of every log that is damaged."""
-    from lavendersim.trace import ExpectedLog, open_trace
-
     whole: dict[str, tuple[Path, EndedCell]] = {}
     damaged: list[str] = []
     for log in logs:
@@ -107,9 +105,8 @@ def _whole(
             where = ", ".join(str(shard / "cells" / log) for shard, _ in found)
             raise TraceError(f"{where}: one cell, but not the same bytes")
         for shard, one in found:
-            path = shard / "cells" / log
             try:
-                open_trace(path, expected=ExpectedLog(digest=one.outcome.log)).verify()
+                whole_log(shard / "cells" / log, one.outcome)
             except (TraceError, OSError) as error:
                 damaged.append(str(error))
                 continue

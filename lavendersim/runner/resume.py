@@ -20,7 +20,7 @@ from lavendersim.errors import TraceError
 from lavendersim.experiment import Experiment
 from lavendersim.trace.whole import INTERRUPTED
 
-from .ended_logs import COMPLETE
+from .ended_logs import COMPLETE, whole_log
 from .leftovers import UNFINISHED
 from .run_directory import CONFIG, Run, list_runs
 from .run_index import ENDED, PENDING, kept_lines
@@ -110,8 +110,6 @@ def _same_text(run: Run, experiment: Experiment) -> bool:
 
 def _why_again(log: Path, status: str, ended: EndedCell | None) -> str:
     """Say why a cell is to be run again; nothing where it is done."""
-    from lavendersim.trace import ExpectedLog, open_trace
-
     from .environment import versions
 
     if status == PENDING or status.startswith(INTERRUPTED):
@@ -121,8 +119,7 @@ def _why_again(log: Path, status: str, ended: EndedCell | None) -> str:
     if ended is None:
         return "it was not noted how it ended"
     try:
-        trace = open_trace(log, expected=ExpectedLog(digest=ended.outcome.log))
-        trace.verify()
+        trace = whole_log(log, ended.outcome)
     except (TraceError, OSError):
         return "its log is cut, damaged or missing"
     return "" if trace.metadata.get("versions") == versions() else "other versions are installed"
