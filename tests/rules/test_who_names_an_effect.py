@@ -7,6 +7,7 @@ what a step reckons with: those are terms that effects declare (`RowTerms`, `Ste
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -91,6 +92,7 @@ ASKED = {
 }
 
 
+@cache
 def names(file: Path) -> set[str]:
     """Return the identifiers and strings of a source file; prose and docstrings are none."""
     found = set()
@@ -118,13 +120,13 @@ def test_nothing_else_names_an_effect(effect: Effect) -> None:
 
 def asked(file: Path) -> set[str]:
     """Return the effects that a source file asks for by name, or imports."""
-    found = set()
+    found, package = set(), module_of(file)[:-1]
     for node in ast.walk(ast.parse(file.read_text())):
         if isinstance(node, ast.Call) and getattr(node.func, "attr", None) == "has":
             found |= {one.value for one in node.args if isinstance(one, ast.Constant)}
         elif isinstance(node, ast.Subscript) and getattr(node.value, "id", None) == "BY_NAME":
             found |= {one.value for one in [node.slice] if isinstance(one, ast.Constant)}
-        for target in modules(node, module_of(file)[:-1]):
+        for target in modules(node, package):
             if target.startswith(EFFECT_FILES):
                 found.add(target.removeprefix(EFFECT_FILES).partition(".")[0])
     return found & {effect.name for effect in EFFECTS} - {file.stem}
