@@ -12,7 +12,8 @@ import pytest
 from hypothesis.internal.conjecture import providers
 
 from tests.drop_config import DROP
-from tests.families_of_plans import ConfigsSharePlans
+from tests.families_of_plans import ScenesSharePlans
+from tests.thorough import THOROUGH
 
 pytest_plugins = ["pytester"]
 pytest.register_assert_rewrite("tests.marked_config")
@@ -48,8 +49,13 @@ QUICK = (
     "configs/chapter/normal_impulse.yaml",
     "configs/chapter/impact_telemetry.yaml",
 )
-# Of hundreds of cells each, on one plan: what it takes to optimise it, their steps give back.
-OPTIMISED = [ROOT / f"configs/hard/maps/{name}.yaml" for name in ("mass_ratio", "stack_height")]
+# Of hundreds of cells each, on one plan: what it takes to optimise it, their steps give back. And
+# what was found on the engine with everything, which the fuzz compiles optimised.
+OPTIMISED = [
+    *(ROOT / f"configs/hard/maps/{name}.yaml" for name in ("mass_ratio", "stack_height")),
+    ROOT / "configs/hard/found/cohesion_of_what_turns.yaml",
+    ROOT / "configs/hard/found/springs_beside_what_gives_way.yaml",
+]
 # Files of tests go to whichever process is free, and the last of them decide how long the others
 # wait: those come last that compile nothing or little, of which none takes a minute.
 LIGHT = (
@@ -64,11 +70,12 @@ LIGHT = (
 def pytest_configure(config: pytest.Config) -> None:
     """Let files be handed out in the order that is made here, not by their numbers of tests.
 
-    And let shipped configs share plans.
+    And let scenes share plans, but where everything is tested.
     """
     if hasattr(config.option, "loadscopereorder"):
         config.option.loadscopereorder = False
-    config.pluginmanager.register(ConfigsSharePlans())
+    if not THOROUGH:
+        config.pluginmanager.register(ScenesSharePlans())
 
 
 def pytest_collection_finish() -> None:

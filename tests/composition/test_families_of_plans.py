@@ -37,8 +37,8 @@ def test_a_family_has_all_that_a_scene_requires_and_its_laws(plans: list[Plan]) 
 
 
 def test_shipped_configs_have_few_plans_with_families(plans: list[Plan]) -> None:
-    """What they are for: of 119 plans some 45 are not compiled."""
-    assert len({spec_of_family(plan) for plan in plans}) < 0.65 * len({plan.spec for plan in plans})
+    """What they are for: of 119 plans some 70 are not compiled."""
+    assert len({spec_of_family(plan) for plan in plans}) < 0.5 * len({plan.spec for plan in plans})
 
 
 def test_cells_of_one_plan_stay_cells_of_one_plan(plans: list[Plan]) -> None:

@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from interpreted_steps import interpreted_advance
-from shared_plan import shared_spec
 
 from lavendersim.engine.records import DIVERGED, RUNNING
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner.plans import shared_plans
 from lavendersim.scene.build import build
 from lavendersim.scene.events import EventQueue
+from tests.families_of_plans import spec_of_family
 
 GRAVITY = 9.81  # [m/s^2], what a config has that states none
 
@@ -46,7 +46,7 @@ def run_config(text: str, *, interpreted: bool = False) -> list[Course]:
     cells = load_experiment_text(text, "test.yaml").cells()
     courses = []
     for cell, plan in zip(cells, shared_plans(cells), strict=True):
-        spec = plan.spec if interpreted else shared_spec(plan)
+        spec = plan.spec if interpreted else spec_of_family(plan)
         scene = build(cell.config, spec)
         engine = scene.engine(spec)
         if interpreted:

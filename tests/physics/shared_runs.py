@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
-from shared_plan import shared_spec
 
 from lavendersim.engine.records import DIVERGED, ROWS_FULL
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner.plans import shared_plans
 from lavendersim.scene.build import build
+from tests.families_of_plans import spec_of_family
 
 GRAVITY = 9.81  # [m/s^2], what a config has that specifies none
 
@@ -50,7 +50,7 @@ def scenes_in_turn(texts: Mapping[str, str]) -> Iterator[tuple[str, States]]:
     cells = [load_experiment_text(text, f"{name}.yaml").cells()[0] for name, text in texts.items()]
     plans = shared_plans(cells)
     assert len({id(plan) for plan in plans}) == 1, "the scenes choose between laws"
-    spec = shared_spec(plans[0])
+    spec = spec_of_family(plans[0])
     for name, cell in zip(texts, cells, strict=True):
         scene = build(cell.config, spec)
         engine = scene.engine(spec)

@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from shared_plan import shared_spec
 from shared_runs import GRAVITY, States, ball, config, flow, plane, run_scenes
 from test_rolling_discs_at_second_order import DISC, UP, WHEEL
 
@@ -25,6 +24,7 @@ from lavendersim.experiment import load_experiment_text
 from lavendersim.runner.cell import divergence
 from lavendersim.scene.build import build
 from lavendersim.scene.plan import plan_of
+from tests.families_of_plans import spec_of_family
 
 ACCURACIES = (1e-4, 1e-5, 1e-6)
 LONGEST = "1/60"
@@ -223,7 +223,7 @@ BRICK = "{shape: {kind: box, size: [0.1, 0.1, 0.1]}, mass: 1, surface: one, posi
 def rows_of(text: str, block_steps: int, capacity: int = 0) -> tuple[Any, list[Rows]]:
     """Return the engine after a run and its rows; capacity: rows of contacts from the start."""
     (cell,) = load_experiment_text(text, "x.yaml").cells()
-    spec = shared_spec(plan_of(cell.config))
+    spec = spec_of_family(plan_of(cell.config))
     engine = build(cell.config, spec).engine(spec, block_steps)
     if capacity:
         engine._grow_contacts(capacity)
@@ -280,7 +280,7 @@ def test_a_sleeping_body_wakes_within_a_substep() -> None:
 def test_a_run_that_cannot_be_so_accurate_ends_with_a_sentence() -> None:
     text = asking(WHEEL.text(120, 1.0, 1.0, "midpoint_contact"), 1e-9, ", smallest_timestep: 1e-3")
     (cell,) = load_experiment_text(text, "x.yaml").cells()
-    spec = shared_spec(plan_of(cell.config))
+    spec = spec_of_family(plan_of(cell.config))
     scene = build(cell.config, spec)
     engine = scene.engine(spec)
     assert engine.advance(cell.config.steps) == DIVERGED
@@ -302,7 +302,7 @@ def test_a_step_of_too_many_substeps_ends_with_a_sentence() -> None:
     text = asking(WHEEL.text(1, 1.0, 1.0, "midpoint_contact"), 1e-9)
     text = text.replace(f"timestep: {LONGEST}", "timestep: 1")
     (cell,) = load_experiment_text(text, "x.yaml").cells()
-    spec = shared_spec(plan_of(cell.config))
+    spec = spec_of_family(plan_of(cell.config))
     scene = build(cell.config, spec)
     engine = scene.engine(spec)
     while (status := engine.advance(1)) == ROWS_FULL:

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from physics_runs import GRAVITY, Course, run_config
-from shared_plan import shared_spec
 
 import lavendersim
 from lavendersim.experiment import load_experiment_text
@@ -19,6 +18,7 @@ from lavendersim.measures import evaluate
 from lavendersim.measures.specs.optimality import Optimality
 from lavendersim.scene.plan import plan_of_cell
 from lavendersim.trace import open_trace
+from tests.families_of_plans import spec_of_family
 
 BLOCK = "{kind: box, size: [0.2, 0.2, 0.2]}"
 SCENE = f"""\
@@ -92,7 +92,7 @@ def test_logged_slip_is_that_of_the_surfaces(course: Course, body: str) -> None:
 def test_contacts_with_a_belt_keep_the_laws_of_contact(tmp_path: Path) -> None:
     """To the residuals of their steps; a slip that lacked the belt would be off by its speed."""
     config = tmp_path / "belt.yaml"
-    spec = shared_spec(plan_of_cell(load_experiment_text(SCENE, "belt.yaml").cells()[0]))
+    spec = spec_of_family(plan_of_cell(load_experiment_text(SCENE, "belt.yaml").cells()[0]))
     switches = dict.fromkeys((*spec.effects, *spec.shape_pairs), "on")  # compiled already
     config.write_text(f"{SCENE}effects: {json.dumps(switches)}\n")
     (cell,) = lavendersim.run(config, root=tmp_path).run.cells

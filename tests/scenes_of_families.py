@@ -1,23 +1,11 @@
-"""Plans that scenes of many files share, as the cells of a sweep do.
+"""Scenes of the physics tests' families of plans (`families_of_plans`): what they require.
 
-A kernel of these takes five to fifteen seconds to compile, and the scenes differ in little. What a
-shared plan has beside what a scene requires is idle there and changes no bit (tests/composition:
-each effect alone, and random subsets); so it was for every scene of these files when it was shared.
-Some effects do change something and are never added. With `impact_order` an impact of one pair
-alone has its rows in its own step and none in the next one; with `rotation` places of frictionless
-balls that slide differ in their last bit.
+Each has whatever most scenes of some files in tests/physics require.
 """
 
 from __future__ import annotations
 
-from functools import cache
-from typing import Any, NamedTuple
-
-from lavendersim.engine.spec import Spec
-from lavendersim.experiment import load_experiment_text
-from lavendersim.scene.plan import CHOICES, Plan, plan_of_cell
-
-# Whatever most of these files require of lavender's own numerics, in one scene.
+# Lavender's own numerics.
 TURNING = """
 scene:
   surfaces:
@@ -182,61 +170,3 @@ scene:
 numerics: {preset: chapter}
 duration: 1
 """
-NEVER_ADDED = {"impact_order", "rotation"}  # nor what needs the former
-BALLS_PAIRS = ("sphere_plane", "sphere_sphere")
-PAIRS = (
-    *("box_box", "box_plane", "capsule_box", "capsule_plane", "cylinder_box", "cylinder_cylinder"),
-    *("cylinder_plane", "hull_plane", "sphere_box", "sphere_cylinder", *BALLS_PAIRS),
-)
-SPRINGY_PAIRS = ("box_plane", "sphere_box", *BALLS_PAIRS)
-LINKED_PAIRS = ("box_box", *SPRINGY_PAIRS)
-ACCURATE_PAIRS = ("cylinder_box", "cylinder_plane", "sphere_cylinder", *LINKED_PAIRS)
-SHARED: dict[str, tuple[tuple[str, ...], ...]] = {  # shape pairs, and more effects, by the scene
-    TURNING: (PAIRS, ("prescribed_motion",)),
-    BALLS: (BALLS_PAIRS, ("broad_phase",)),
-    SPRINGY: (SPRINGY_PAIRS, ()),
-    LINKED: (LINKED_PAIRS, ()),
-    ACCURATE: (ACCURATE_PAIRS, ("sleeping",)),
-    CHAPTER_BALLS: (BALLS_PAIRS, ("broad_phase", "sleeping")),
-    CHAPTER_TURNING: (LINKED_PAIRS, ("frictionless_contact",)),
-}
-BY_EFFECTS = CHOICES.index("sleeping")  # a choice that says no more than that the effect is there
-
-
-class _Shared(NamedTuple):
-    """A plan that scenes share: what is compiled, and the laws that it chooses."""
-
-    spec: Spec
-    choices: tuple[Any, ...]
-
-    def serves(self, plan: Plan) -> bool:
-        """Whether a plan chooses the same laws, and all else that it has is idle in it."""
-        has, required = set(self.spec.effects), set(plan.spec.effects)
-        return (
-            _laws(plan.choices) == _laws(self.choices)
-            and set(plan.spec.shape_pairs) <= set(self.spec.shape_pairs)
-            and required <= has
-            and NEVER_ADDED & required == NEVER_ADDED & has
-        )
-
-
-def shared_spec(plan: Plan) -> Spec:
-    """Return what is compiled for a plan: a shared one where that chooses the same laws."""
-    for shared in _shared():
-        if shared.serves(plan):
-            return shared.spec
-    return plan.spec
-
-
-def _laws(choices: tuple[Any, ...]) -> tuple[Any, ...]:
-    return choices[:BY_EFFECTS] + choices[BY_EFFECTS + 1 :]
-
-
-@cache
-def _shared() -> list[_Shared]:
-    found = []
-    for text, (pairs, effects) in SHARED.items():
-        plan = plan_of_cell(load_experiment_text(text, "shared.yaml").cells()[0])
-        spec = plan.spec.including(*effects)._replace(shape_pairs=tuple(sorted(pairs)))
-        found.append(_Shared(spec, plan.choices))
-    return found
