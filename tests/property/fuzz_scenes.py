@@ -9,9 +9,12 @@ is legal.
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import yaml
 from fuzz_draws import Draw
 from fuzz_drives import events, forces, motion, paired, springs
 from fuzz_joints import connections
@@ -73,6 +76,18 @@ class Drawn(NamedTuple):
         shapes = {*self.shapes, "plane"} - {"compound"}
         pairs = [name for name, pair in SHAPE_PAIRS.items() if {*pair.shapes} <= shapes]
         return dict.fromkeys((*self.effects, *pairs), "on")
+
+    def has_all_of(self, tree: dict[str, Any]) -> bool:
+        """Whether a config chooses these laws, and forces on no more than this engine has."""
+        laws = {key: tree["numerics"].get(key) for key in self.numerics}
+        return laws == self.numerics and tree.get("effects", {}).items() <= self.switches().items()
+
+
+@cache
+def found_once() -> dict[str, dict[str, Any]]:
+    """Return the configs of what the fuzz has found, by the names of their files."""
+    files = sorted((Path(__file__).parents[2] / "configs" / "hard" / "found").glob("*.yaml"))
+    return {file.stem: yaml.safe_load(file.read_text(encoding="utf-8")) for file in files}
 
 
 def _closed(names: set[str], numerics: dict[str, Any]) -> tuple[str, ...]:

@@ -1,6 +1,11 @@
 """Random configs break no law, on the engine with everything and on a drawn one.
 
-`LAVENDER_TEST_FUZZ` draws more than 120 configs; `tests/property/fuzz.py` draws them on more plans.
+So does what was found once, on the engine with everything where that has all of its own: the rest
+is idle there and changes no bit (tests/composition), and one engine is compiled.
+
+`LAVENDER_TEST_FUZZ` draws more than 100 configs; `tests/property/fuzz.py` draws them on more plans.
+Of the first 24 on the engine with everything the 22nd takes a minute of the processor, and all
+others together half of one: every night twelve times as many are drawn.
 """
 
 from __future__ import annotations
@@ -12,15 +17,19 @@ from typing import Any
 import numpy as np
 import pytest
 from fuzz import HEADING, Kept, drawn, drawn_plans, finds, first_config, fuzz, summarised
-from fuzz_laws import broken, loaded, run
-from fuzz_scenes import EVERY, FORCED, FULL, JOINED, NOT_DRAWN, SOLIDS, Drawn
+from fuzz_laws import broken, loaded, run, text_of
+from fuzz_scenes import EVERY, FORCED, FULL, JOINED, NOT_DRAWN, SOLIDS, Drawn, found_once
 from idle import compile_together
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS
+from lavendersim.experiment import load_experiment_text
+from lavendersim.scene.plan import plan_of_cell
+from tests.families_of_plans import spec_of_family
 
-CONFIGS = int(os.environ.get("LAVENDER_TEST_FUZZ", "120"))
+CONFIGS = int(os.environ.get("LAVENDER_TEST_FUZZ", "100"))
 ENGINES = {"everything": FULL, **{f"drawn {k}": plan for k, plan in enumerate(drawn_plans(1))}}
+FOUND = {name: tree for name, tree in found_once().items() if FULL.has_all_of(tree)}
 SHARE = {"everything": 2, "drawn 0": 8}  # tenths of the configs: the first are dear
 
 
@@ -39,11 +48,23 @@ def test_random_configs_break_no_law(name: str) -> None:
     assert [find.laws for find in finds(ENGINES[name], CONFIGS * SHARE[name] // 10)] == []
 
 
+@pytest.mark.parametrize("tree", FOUND.values(), ids=FOUND)
+def test_what_was_found_once_breaks_no_law_beside_everything(tree: dict[str, Any]) -> None:
+    shared = loaded(first_config(FULL))[1]
+    assert broken(tree | {"effects": FULL.switches()}, shared) == []
+
+
 def test_the_fullest_engine_has_every_effect_and_pair_of_shapes() -> None:
     spec = loaded(first_config(FULL))[1]
     assert {*spec.effects} == EVERY
     assert {*spec.shape_pairs} == {*SHAPE_PAIRS}
     assert FULL.shapes == SOLIDS
+
+
+def test_shipped_finds_have_the_fullest_engine_where_the_suite_runs_them() -> None:
+    for tree in FOUND.values():
+        (cell,) = load_experiment_text(text_of(tree), "found.yaml").cells()
+        assert spec_of_family(plan_of_cell(cell)) == loaded(first_config(FULL))[1]
 
 
 def test_drawn_engines_differ_in_what_they_leave_out() -> None:
