@@ -104,8 +104,8 @@ FAMILIES = (
             "sphere_cylinder",
         ),
     ),
-    # What gives way, and what ropes and springs tie. Joints have plans of their own: beside effects
-    # of these, which should be idle, a chain of joints gained energy, and a motor's wheel diverged.
+    # What gives way, and what ropes and springs tie. Joints have plans of their own: where
+    # `torsional_friction` is compiled in, Newton's method divides by their `k_torsion`, which is 0.
     Family(texts=(scenes.SPRINGY, scenes.LINKED), shape_pairs=BALLS_AND_BOXES),
     Family(("effects/rope", "effects/spring", "hard/contact/soft_to_stiff")),
     Family(("effects/falling_restitution", "effects/cohesion")),
