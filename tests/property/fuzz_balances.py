@@ -187,7 +187,8 @@ def _placed(config: CellConfig, rows: Rows, steps: Steps) -> np.ndarray:
     names = [*config.scene.bodies]
     sprung = {names.index(name) for one in config.scene.springs for name in (one.a, one.b)}
     placed = np.zeros(steps.before.mass.shape, dtype=bool)
-    if not sprung:
+    # Plans without contacts at the middle have no unions: their springs act on free bodies.
+    if not sprung or "spring_not_converged" not in (rows.step.dtype.names or ()):
         return placed
     missed = rows.step["spring_not_converged"][1 : len(placed) + 1] > 0
     for step in np.flatnonzero(missed):

@@ -295,7 +295,8 @@ def _in_ellipse(rows: np.ndarray) -> np.ndarray:
 def _immovable(run: Ended, config: CellConfig) -> list[str]:
     """What is fixed or removed stays where it is; what is kinematic keeps its velocity."""
     # Velocities may follow; of the step that diverged nothing is a number.
-    found, poses = [], run.rows.pose[: run.steps if run.said else None, :, :7]
+    states = run.rows.pose[: run.steps if run.said else None]
+    found, poses = [], states[:, :, :7]
     removed = {event.body: event.at for event in config.events if getattr(event, "remove", False)}
     for k, (name, body) in enumerate(config.scene.bodies.items()):
         if name in removed:
@@ -308,9 +309,8 @@ def _immovable(run: Ended, config: CellConfig) -> list[str]:
         elif body.kinematic and body.motion:
             continue  # `tests/physics/test_functions_of_time.py`
         elif body.kinematic:
-            velocity = run.rows.pose[: run.steps if run.said else None, k, 7:]
-            if (velocity != [*body.velocity, *body.angular_velocity]).any():
+            if (states[:, k, 7:] != [*body.velocity, *body.angular_velocity]).any():
                 found.append(f"immovable: {name} is kinematic, and its velocity changed")
-        elif body.fixed and (run.rows.pose[:, k] != run.rows.pose[0, k]).any():
+        elif body.fixed and (states[:, k] != states[0, k]).any():
             found.append(f"immovable: {name} is fixed, and moved")
     return found

@@ -3,6 +3,7 @@
 A contact persists when the cache holds a point of the same pair within `cache_distance` of it, seen
 from body A, whose normal still points the same way. The same feature is preferred; without one the
 nearest unclaimed point serves. Rows of both lists are ordered by pair, so one walk matches all.
+A row of a normal alone begins without tangential impulse and torque: an event took its friction.
 
 Where impacts part a step, a part may be of any length: what a solve leaves (1e-9 m/s, times a mass)
 does not shrink with it, and would be scaled to the next. Brief parts leave the cache as it is.
@@ -32,6 +33,7 @@ def make(spec):
     terms = row_terms(spec)
     torsional, rolling, bilateral = terms.torsional, terms.rolling, terms.bilateral
     bounded, stretched = terms.bounded, terms.stretched
+    mixed = friction and terms.frictionless
 
     def match_contacts(contacts, count, bodies, cache, counters, params):
         if counters.cached == 0:
@@ -75,14 +77,17 @@ def make(spec):
                     cache[chosen].claimed = 1
                     contact.matched = 1
                     contact.lambda_n = cache[chosen].lambda_n * scale
+                    share = scale
+                    if mixed:
+                        share = scale * contact.frictional
                     if friction:
                         # The impulse in the old tangent plane, in the new one; the first sweep
                         # brings it back into the disc.
                         old = cache[chosen]
-                        contact.lambda_1 = scale * (
+                        contact.lambda_1 = share * (
                             contact.t1x * old.px + contact.t1y * old.py + contact.t1z * old.pz
                         )
-                        contact.lambda_2 = scale * (
+                        contact.lambda_2 = share * (
                             contact.t2x * old.px + contact.t2y * old.py + contact.t2z * old.pz
                         )
                         if stretched:
@@ -91,11 +96,11 @@ def make(spec):
                     # What begins without a push begins without torque: neither is applied.
                     if torsional:
                         if contact.lambda_n > 0.0:
-                            contact.psi_n = scale * cache[chosen].psi_n
+                            contact.psi_n = share * cache[chosen].psi_n
                     if rolling:
                         if contact.lambda_n > 0.0:
                             old = cache[chosen]
-                            x, y, z = scale * old.psi_x, scale * old.psi_y, scale * old.psi_z
+                            x, y, z = share * old.psi_x, share * old.psi_y, share * old.psi_z
                             contact.psi_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
                             contact.psi_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
                     left -= 1

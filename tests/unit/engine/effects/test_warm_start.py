@@ -137,3 +137,26 @@ def test_no_impulse_is_handed_on_twice():
     one_left.engine.state.cache["feature"] += 100
     one_left.engine.counters["cached"] = 1
     assert np.count_nonzero(one_left.run(1).contact["impulse_n"]) == 1
+
+
+def test_a_pair_that_loses_its_friction_starts_without_any():
+    """A sliding ball; an event takes the friction of its pair, torsional and rolling as well.
+
+    A frictionless row has no tangential impulse and no torque: what began with one logged it, and
+    nothing of it acted (`tests/property/fuzz.py`, two runs in 2,400 of a drawn plan).
+    """
+    kinds = ("friction", "torsional_friction", "rolling_friction")
+    spun = {"velocity": (1.0, 0.0, 0.0), "angular_velocity": (1.0, 3.0, 2.0)}
+    surface = dict.fromkeys(kinds, 0.1)
+    bodies = {"floor": plane(**surface), "ball": sphere(0.1, (0.0, 0.0, 0.1), **surface, **spun)}
+    bench = Bench(resolved(bodies, GRAVITY))
+    columns = ("impulse_t1", "angular_impulse_n", "angular_impulse_t1")
+    began = bench.run(1).contact[0]
+    assert all(abs(began[column]) > 1e-5 for column in columns)
+    for kind in kinds:
+        bench.engine.state.pairs[kind] = 0.0
+    speed = bench.velocity[1, 0]
+    after = bench.run(1).contact[0]
+    assert after["impulse_n"] > 0.0
+    assert [after[column] for column in columns] == [0.0, 0.0, 0.0]
+    assert bench.velocity[1, 0] == speed
