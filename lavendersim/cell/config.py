@@ -23,7 +23,6 @@ from lavendersim.clock import Clock
 from lavendersim.quantities.model import ResolvedModel
 from lavendersim.quantities.scalars import exact
 
-
 # Numerator and denominator: to hash a Fraction takes longer than what is looked up.
 Ratio = tuple[int, int]
 
@@ -34,9 +33,7 @@ def _clock(timestep: Ratio, changes: tuple[tuple[Fraction, Fraction], ...]) -> C
 
 
 @lru_cache(maxsize=256)
-def _steps(
-    timestep: Ratio, changes: tuple[tuple[Fraction, Fraction], ...], duration: float
-) -> int:
+def _steps(timestep: Ratio, changes: tuple[tuple[Fraction, Fraction], ...], duration: float) -> int:
     return _clock(timestep, changes).steps_of(exact(duration))
 
 

@@ -24,9 +24,7 @@ _LINE: Final = re.compile(r"([0-9a-f]{64})  ([\w.]+)")
 def seal_of(directory: Path, names: Iterable[str]) -> str:
     """Return the seal of a run's files, those that there are."""
     return "".join(
-        f"{_digest_of(directory / name)}  {name}\n"
-        for name in names
-        if (directory / name).exists()
+        f"{_digest_of(directory / name)}  {name}\n" for name in names if (directory / name).exists()
     )
 
 

@@ -282,7 +282,8 @@ class Container:
 
 def _joined(pieces: Iterable[bytes]) -> Iterator[bytes]:
     """Yield pieces in their order: long ones as they are, short ones in one."""
-    for long, group in groupby(pieces, lambda piece: len(piece) > LONG):
+    for long, alike in groupby(pieces, lambda piece: len(piece) > LONG):
+        group = list(alike)
         yield from group if long else (b"".join(group),)
 
 
