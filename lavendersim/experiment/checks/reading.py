@@ -76,7 +76,8 @@ class Reading:
         """
         data = self._plain(self.root, (), only)
         if only is not None:
-            data |= {key: _known[node] for key, node in self._alone() if node in _known}
+            kept = ((key, _known.get(node)) for key, node in self._alone() if key in only)
+            data |= {key: section for key, section in kept if section is not None}
         try:
             return model.model_validate(data, context=self)
         except ValidationError as error:
