@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Annotated, Any, Final, NamedTuple
 
 import typer
@@ -34,7 +35,6 @@ class Judged(NamedTuple):
     passed: bool
     measured: float
     expected: str
-    message: str
     margin: float  # share of the bound that is left; NaN where there is no such
     judged: bool = True
     tolerance: str = ""
@@ -42,9 +42,7 @@ class Judged(NamedTuple):
     @property
     def asked(self) -> str:
         """What is expected, with the digits that a person can use and the tolerance."""
-        text = FLOAT.sub(lambda found: digits(float(found[0])), self.expected)
-        has_one = self.tolerance not in NO_TOLERANCES
-        return f"{text}, within {self.tolerance}" if has_one else text
+        return _asked(self.expected, self.tolerance)
 
     @property
     def fails(self) -> bool:
@@ -62,6 +60,12 @@ class ClaimLine(NamedTuple):
 
     passed: bool | None  # None: the engine does not report enough to judge it in any cell
     text: str
+
+
+@lru_cache(maxsize=256)  # of most sweeps all cells are asked the same
+def _asked(expected: str, tolerance: str) -> str:
+    text = FLOAT.sub(lambda found: digits(float(found[0])), expected)
+    return f"{text}, within {tolerance}" if tolerance not in NO_TOLERANCES else text
 
 
 def summarise(verdicts: Sequence[Any]) -> list[ClaimLine]:
@@ -152,10 +156,10 @@ def print_claims(verdicts: Sequence[Any], verbose: bool = False) -> None:
         for passed, text in summarise(verdicts):
             typer.echo(f"  {mark(passed)}  {text}")
         return
-    for one in of_memory(verdicts):
+    for verdict, one in zip(verdicts, of_memory(verdicts), strict=True):
         shown = f"{one.node}: {digits(one.measured)}, expected {one.asked}"
         if not one.judged:
-            shown = one.message
+            shown = verdict.message
         typer.echo(f"  {mark(one.passed if one.judged else None)}  {shown}")
 
 

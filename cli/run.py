@@ -266,7 +266,8 @@ def run(
                 drawing.say(partial(print_finished, finished, refined if refine else None))
             if drawn:
                 drawing.take(take)
-            overheads.raise_interrupted(finished.run)
+            if experiment.config.overhead is not None:
+                overheads.raise_interrupted(finished.run)
     if plot and len(with_overheads) > 1:
         from lavendersim.figures import draw_overheads
 
@@ -287,7 +288,8 @@ def print_finished(finished: Any, refined: Any = None) -> None:
     typer.echo(f"  logs  {finished.run.path}")
     if refined is not None:
         time_errors.print_table(refined)
-    overheads.print_table(finished.run)
+    if finished.run.experiment.config.overhead is not None:  # else all results are read for none
+        overheads.print_table(finished.run)
 
 
 def _print_figures(figures: list[Path]) -> None:

@@ -98,13 +98,13 @@ def flush_tree(folder: Path) -> None:
     folders, files = [], []
     for place, _, names in os.walk(folder):
         folders.append(Path(place))
-        files += [Path(place, name) for name in names]
+        files += [os.path.join(place, name) for name in names]
     if len(files) > FEW and flush_file_system(folder):
         return
     from concurrent.futures import ThreadPoolExecutor  # late: runs are listed without
 
     with ThreadPoolExecutor(AT_ONCE) as threads:
-        list(threads.map(_flush, files))
+        list(threads.map(_flush, map(Path, files)))
     for each in folders:
         flush_folder(each)
 

@@ -23,16 +23,17 @@ from lavendersim.clock import Clock
 from lavendersim.quantities.model import ResolvedModel
 from lavendersim.quantities.scalars import exact
 
+# Numerator and denominator: to hash a Fraction takes longer than what is looked up.
+Ratio = tuple[int, int]
+
 
 @lru_cache(maxsize=256)  # it never changes, and the cells of most sweeps have one
-def _clock(timestep: Fraction, changes: tuple[tuple[Fraction, Fraction], ...]) -> Clock:
-    return Clock(timestep, changes)
+def _clock(timestep: Ratio, changes: tuple[tuple[Fraction, Fraction], ...]) -> Clock:
+    return Clock(Fraction(*timestep), changes)
 
 
 @lru_cache(maxsize=256)
-def _steps(
-    timestep: Fraction, changes: tuple[tuple[Fraction, Fraction], ...], duration: float
-) -> int:
+def _steps(timestep: Ratio, changes: tuple[tuple[Fraction, Fraction], ...], duration: float) -> int:
     return _clock(timestep, changes).steps_of(exact(duration))
 
 
@@ -107,12 +108,13 @@ class CellConfig(ResolvedModel):
     @property
     def clock(self) -> Clock:
         """The times of its steps."""
-        return _clock(self.numerics.timestep, self._timed)
+        return _clock(self.numerics.timestep.as_integer_ratio(), self._timed)
 
     @property
     def steps(self) -> int:
         """How many steps the duration has, see `Clock.steps_of`."""
-        return _steps(self.numerics.timestep, self._timed, self.duration)
+        timestep = self.numerics.timestep.as_integer_ratio()
+        return _steps(timestep, self._timed, self.duration)
 
     @property
     def _timed(self) -> tuple[tuple[Fraction, Fraction], ...]:

@@ -7,12 +7,12 @@ object may stand in many configs.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
-from lavendersim.quantities.model import ConfigModel, ResolvedModel
-
-Part = TypeVar("Part", bound=ConfigModel | ResolvedModel)
+Part = TypeVar("Part")  # a frozen model
+Source = TypeVar("Source")  # likewise
 
 KEPT: Final = 1024  # parts that are remembered; one that is forgotten is only kept once more
 
@@ -22,7 +22,7 @@ class _Equal:
 
     __slots__ = ("content", "part")
 
-    def __init__(self, part: ConfigModel | ResolvedModel) -> None:
+    def __init__(self, part: object) -> None:
         self.part, self.content = part, (type(part), str(vars(part)))
 
     def __eq__(self, other: object) -> bool:
@@ -33,12 +33,25 @@ class _Equal:
 
 
 @lru_cache(maxsize=KEPT)
-def _first(one: _Equal) -> ConfigModel | ResolvedModel:
+def _first(one: _Equal) -> Any:
     return one.part
 
 
 def shared(part: Part) -> Part:
     """Return the first part that was equal to this one, as long as it is remembered."""
-    first = _first(_Equal(part))
-    assert type(first) is type(part)
+    first: Part = _first(_Equal(part))
     return first
+
+
+@lru_cache(maxsize=KEPT)
+def _made(one: _Equal, make: Callable[[Any], Any]) -> Any:
+    return make(one.part)
+
+
+def made_once(source: Source, make: Callable[[Source], Part]) -> Part:
+    """Return what is made of a part of a config as written: once for all that are equal.
+
+    make: a function of a module, of the part's fields alone.
+    """
+    made: Part = _made(_Equal(source), make)
+    return made

@@ -43,6 +43,7 @@ def build_cell(root: Node, point: SweepPoint, report: Report) -> CellConfig | No
     source = reading.read(CellSource, only=CellSource.model_fields)
     if not report.close_round() or source is None:
         return None
+    reading.keep(source)
     try:
         config = resolve_cell(source)
     except SceneError as error:

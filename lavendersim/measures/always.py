@@ -7,6 +7,7 @@ bound was stopped there: it is the last state of its log.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -103,9 +104,13 @@ def _place(one: CheckedSteps, section: Trace, row: int, time: float) -> str:
     return f"first in step {step}, t = {time:.9g} s: {number}{f', {bodies}' if bodies else ''}"
 
 
+@lru_cache(maxsize=256)  # most cells of a sweep have the same bounds, and keep one text of each
+def _expected(bound: float, unit: str) -> str:
+    return f"at most {bound:g}{unit} in every step"
+
+
 def _outcome(one: _Worst, ended: str, cell: Cell) -> Outcome:
-    bound, unit = one.bound, one.unit
-    expected = f"at most {bound:g}{unit} in every step"
+    bound, expected = one.bound, _expected(one.bound, one.unit)
     margin = 1.0 - one.number / bound if bound > 0.0 else float("nan")
     if not one.first:
         return Outcome(True, one.number, expected, NO_TOLERANCE, margin=margin)

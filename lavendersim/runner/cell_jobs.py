@@ -32,13 +32,14 @@ class Prepared(NamedTuple):
     def jobs(self, directory: Path) -> list[CellJob]:
         """Return a job for every cell, whose log is written into a directory."""
         experiment, seeds = self.experiment, Seeds(self.experiment)
+        logs = directory / "cells"
         in_logs = {plan.choices: plan_in_log(plan) for plan in distinct(self.plans)}
         return [
             CellJob(
                 cell.index,
                 cell.config,
                 experiment.text,
-                directory / "cells" / log,
+                logs / log,
                 plan,
                 seeds.of(cell),
                 experiment.always,

@@ -224,18 +224,20 @@ def complete(
     ended, taken, index = _run_cells(
         experiment, pending, configs, done, (executor or jobs, progress)
     )
-    outcomes = [ended[job.path]._replace(cell=job.cell) for job in pending]
+    outcomes = [_outcome_of(job, ended) for job in pending]
+    del pending, configs, ended  # of many cells they take as much as the verdicts on them
     # A cell whose process died has no measures to draw, nor a log to take them from.
     lost = {outcome.cell for outcome in outcomes if not outcome.log}
     drawn = {index: one.values for index, one in taken.items() if index not in lost}
     run = Run(directory, experiment, drawn, written=index)
     with uncollected():
         result = _judged(run, outcomes, taken)
+    measured = [taken[cell.index].values for cell in result.run.cells]
+    del taken
     table = None
     if overheads and experiment.config.overhead is not None:
         table = take_overheads(experiment, jobs, progress.timing)
         write_overheads(directory / OVERHEADS, table)
-    measured = [taken[cell.index].values for cell in result.run.cells]
     with uncollected():
         write_results(result, measured, table)
     known = environment(*(plan.spec for plan in distinct(prepared.plans)))
@@ -298,6 +300,12 @@ def _run_cells(
         index = index._replace(cells=tuple(index.cells))
         write_index(directory / CELLS, index)
     return ended, taken, index
+
+
+def _outcome_of(job: CellJob, ended: Mapping[Path, CellOutcome]) -> CellOutcome:
+    """Return how a cell ended; its log may be that of another cell, too."""
+    outcome = ended[job.path]
+    return outcome if outcome.cell == job.cell else outcome._replace(cell=job.cell)
 
 
 def _judged(run: Run, outcomes: list[CellOutcome], taken: Mapping[int, Measured]) -> Finished:

@@ -32,7 +32,7 @@ class ProblemDump:
 
     def __init__(self, log: Path, record: CellRecord) -> None:
         self.every = steps_between(record.problems)
-        self._folder = log.parent.parent / PROBLEMS / log.stem
+        self._log = log
         self._last = 0
 
     def next_stop(self, done: int, stop: int) -> int:
@@ -52,7 +52,7 @@ class ProblemDump:
             return
         from lavendersim.problems.fclib import write_fclib  # late: h5py
 
-        path = self._folder / f"step_{done:06d}.hdf5"
+        path = self._log.parent.parent / PROBLEMS / self._log.stem / f"step_{done:06d}.hdf5"
         with written_aside(path, flush=False) as unfinished:  # as all of the run, when it is done
             write_fclib(unfinished, found.problem, title=f"step {done}", guess=found.impulses)
 

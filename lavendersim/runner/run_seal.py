@@ -24,10 +24,14 @@ _LINE: Final = re.compile(r"([0-9a-f]{64})  ([\w.]+)")
 def seal_of(directory: Path, names: Iterable[str]) -> str:
     """Return the seal of a run's files, those that there are."""
     return "".join(
-        f"{hashlib.sha256((directory / name).read_bytes()).hexdigest()}  {name}\n"
-        for name in names
-        if (directory / name).exists()
+        f"{_digest_of(directory / name)}  {name}\n" for name in names if (directory / name).exists()
     )
+
+
+def _digest_of(path: Path) -> str:
+    """Return the SHA-256 of a file, read in pieces: tables of many cells are large."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def sealed(directory: Path) -> dict[str, str]:

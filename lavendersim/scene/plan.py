@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
-from lavendersim.cell import CellConfig, CellEffects
+from lavendersim.cell import CellConfig, CellEffects, Numerics
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS, Decision, Facts
 from lavendersim.engine.effects.decision import named
@@ -38,6 +38,7 @@ CHOICES: Final = (
     "effects",
     "engine",
 )
+_NUMERICS: Final = frozenset(Numerics.model_fields)
 APART: Final = {
     name: Decision(False, f"no {pair.shapes[0]} and {pair.shapes[1]} may touch")
     for name, pair in SHAPE_PAIRS.items()
@@ -235,7 +236,7 @@ def _on(decisions: Mapping[str, Decision]) -> tuple[str, ...]:
 
 
 def _choices(config: CellConfig, facts: Facts) -> tuple[Any, ...]:
-    numerics = config.numerics
+    numerics, study = config.numerics, config.study
     made = {
         "error_control": numerics.accuracy is not None,
         # Where many bodies move, they are as solved: an engine of few would choose theirs.
@@ -243,8 +244,10 @@ def _choices(config: CellConfig, facts: Facts) -> tuple[Any, ...]:
         "effects": _switched(config.effects),
         "engine": "lavender" if config.engine is None else config.engine.name,
     }
-    chosen = {**dict(numerics), **dict(config.study), **made}
-    return tuple(chosen[name] for name in CHOICES)
+    return tuple(
+        made[name] if name in made else getattr(numerics if name in _NUMERICS else study, name)
+        for name in CHOICES
+    )
 
 
 def _switched(effects: CellEffects) -> str:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import struct
 import threading
 import zlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import groupby
@@ -164,6 +164,7 @@ class Container:
         self._path = path
         self._stream = path.open("wb")
         self._unwritten: list[bytes] = []  # records that go with the next chunk
+        self._summed: list[bytes] = []  # of them, those that are in the checksums
         self._registered: list[Registered] = []
         self._crc = 0
         self._sha256 = FileDigest()
@@ -244,7 +245,7 @@ class Container:
     @property
     def crc(self) -> int:
         """CRC of all bytes so far; `finish` writes it into DataEnd."""
-        self._flush()
+        self._sum()
         return self._crc
 
     def abandon(self) -> None:
@@ -261,16 +262,29 @@ class Container:
         self._unwritten.append(data)
         self._offset += len(data)
 
+    def _sum(self) -> None:
+        """Take what was written into the checksums."""
+        unwritten, self._unwritten = self._unwritten, []
+        for data in _joined(unwritten):
+            self._crc = zlib.crc32(data, self._crc)
+            self._sha256.update(data)
+            self._summed.append(data)
+
     def _flush(self) -> None:
         """Hand what was written to the system: many short records in one call, long ones alone."""
-        unwritten, self._unwritten = self._unwritten, []
+        self._sum()
+        summed, self._summed = self._summed, []
         with named(self._path):
-            for long, pieces in groupby(unwritten, lambda piece: len(piece) > LONG):
-                for data in pieces if long else (b"".join(pieces),):
-                    self._crc = zlib.crc32(data, self._crc)
-                    self._sha256.update(data)
-                    self._stream.write(data)
+            for data in _joined(summed):
+                self._stream.write(data)
             self._stream.flush()
+
+
+def _joined(pieces: Iterable[bytes]) -> Iterator[bytes]:
+    """Yield pieces in their order: long ones as they are, short ones in one."""
+    for long, alike in groupby(pieces, lambda piece: len(piece) > LONG):
+        group = list(alike)
+        yield from group if long else (b"".join(group),)
 
 
 def index_of(chunk: Chunk, offset: int, length: int) -> ChunkIndex:

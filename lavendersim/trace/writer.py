@@ -131,7 +131,8 @@ class TraceWriter:
         if unknown := absent.keys() - layout.CHANNELS.keys():
             raise ValueError(f"no topics of a log: {sorted(unknown)}")
         self._topics = layout.CHANNELS.keys() - absent.keys()
-        self._path, self._config, self._as_written = Path(path), config, as_written
+        self._path = path if isinstance(path, Path) else Path(path)
+        self._config, self._as_written = config, as_written
         self._bodies = config.scene.bodies
         self._clock = config.clock
         self._form: Form | None = None

@@ -14,7 +14,8 @@ import pytest
 from command_line import lavender
 
 from lavender_cli.cell_lines import line_of, summary_of
-from lavender_cli.claims import Judged, print_claims, print_failures, summarise
+from lavender_cli.claims import print_claims, print_failures, summarise
+from lavendersim.measures.verdict import Verdict
 from lavendersim.runner.run_results import CellResult
 from tests.drop_config import DROP
 
@@ -22,13 +23,14 @@ SCREEN = 50  # lines
 CELLS = 2000
 
 
-def claim(name: str, cell: int, measured: float, bound: float = 1.0) -> Judged:
+def claim(name: str, cell: int, measured: float, bound: float = 1.0) -> Verdict:
     """One claim of a cell: at most `bound`."""
     node = f"{name} at e={cell}"
     passed = measured <= bound
     message = f"{node}: {'passed' if passed else 'FAILED'}\n  measured   {measured}"
     expected = f"at most {bound:g} m"
-    return Judged(name, node, passed, measured, expected, message, 1.0 - measured / bound)
+    margin = 1.0 - measured / bound
+    return Verdict(name, node, passed, measured, expected, "", message, "", margin=margin)
 
 
 def row(index: int, **changed: Any) -> CellResult:

@@ -9,14 +9,15 @@ defect of one value hides none of another.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from lavendersim.engine.effects import JOINTS
 from lavendersim.experiment.checks.messages import report_errors
+from lavendersim.experiment.models.experiment import CellSource
 from lavendersim.experiment.models.shapes import SOLIDS
 from lavendersim.experiment.models.tree import ARRANGEMENTS, BODIES, bodies_of, swept_values
 from lavendersim.experiment.text.node import ABSENT, Mark, Node, Path
@@ -29,6 +30,8 @@ from lavendersim.quantities.names import NamedKind
 from lavendersim.quantities.scalars import exact, label
 
 Read = TypeVar("Read", bound=ConfigModel)
+KEPT: Final = 64  # sections of cells that are remembered
+_known: dict[Node, Any] = {}  # by the node itself: cells of a sweep of other things have one
 
 
 class Reading:
@@ -72,6 +75,9 @@ class Reading:
         only: sections to which that is limited; all of them if None.
         """
         data = self._plain(self.root, (), only)
+        if only is not None:
+            kept = ((key, _known.get(node)) for key, node in self._alone() if key in only)
+            data |= {key: section for key, section in kept if section is not None}
         try:
             return model.model_validate(data, context=self)
         except ValidationError as error:
@@ -80,6 +86,16 @@ class Reading:
         finally:
             for mark, sentence in self._noted:
                 self._report.add(mark, sentence)
+
+    def keep(self, read: CellSource) -> None:
+        """Note what was read and found right of sections that stand alone, for other cells."""
+        if len(_known) > KEPT:
+            _known.clear()
+        _known.update({node: getattr(read, key) for key, node in self._alone()})
+
+    def _alone(self) -> Iterator[tuple[str, Node]]:
+        entries = self.root.entries
+        return ((key, entries[key]) for key in CellSource.ALONE if key in entries)
 
     def _plain(self, node: Node, path: Path, only: Collection[str] | None = None) -> Any:
         if isinstance(node.content, tuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Final
+from typing import Annotated, ClassVar, Final
 
 from pydantic import ConfigDict, Field
 
@@ -71,6 +71,10 @@ SweepOf = Annotated[
 
 class CellSource(ConfigModel):
     """The part of a config that a sweep can reach and that decides what is simulated."""
+
+    # Sections whose rules and values ask for nothing beside them, and of many values: where they
+    # stand as in another cell they are what they were there.
+    ALONE: ClassVar[tuple[str, ...]] = ("numerics",)
 
     constants: dict[ConstantName, Annotated[float, Quantity()]] = Field(
         default={},

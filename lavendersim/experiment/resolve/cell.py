@@ -8,8 +8,10 @@ from lavendersim.cell.config import CellConfig, CellEffects, CellStudy
 from lavendersim.cell.engine import CellEngine
 from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord
-from lavendersim.cell.shared_parts import shared
+from lavendersim.cell.shared_parts import made_once, shared
 from lavendersim.experiment.models.experiment import CellSource, NumericsSource
+from lavendersim.experiment.models.record import Record
+from lavendersim.experiment.models.study import Study
 from lavendersim.experiment.resolve.events import resolve_event, resolve_triggered
 from lavendersim.experiment.resolve.scene import resolve_scene
 from lavendersim.peers.catalogue import LAVENDER, peer_of
@@ -21,11 +23,8 @@ def resolve_cell(source: CellSource) -> CellConfig:
     `source` has passed the rules of its models.
     """
     assert isinstance(source.numerics, NumericsSource)  # its preset is merged in (`with_preset`)
-    numerics = shared(Numerics.model_construct(**dict(source.numerics)))
+    numerics = made_once(source.numerics, _numerics)
     engine = engine_of(source)
-    # Another engine's log has velocities: whoever judges it has nothing else of its dynamics.
-    record = source.record.model_dump(by_alias=True)
-    record |= {"velocities": True} if engine is not None else {}
     scene, frames = resolve_scene(source.scene, numerics.timestep, source.duration)
     resolved = partial(resolve_event, scene=source.scene, frames=frames)
     return CellConfig.of(
@@ -33,13 +32,13 @@ def resolve_cell(source: CellSource) -> CellConfig:
         events=tuple(resolved(event) for event in source.events if event.when is None),
         numerics=numerics,
         duration=source.duration,
-        record=shared(CellRecord.model_validate(record)),
+        record=made_once(source.record, _record if engine is None else _record_elsewhere),
         effects=shared(
             CellEffects(
                 force=source.effects.force, switches=dict(sorted(source.effects.switches.items()))
             )
         ),
-        study=shared(CellStudy(mistake=source.study.mistake)),
+        study=made_once(source.study, _study),
         triggered=tuple(
             resolve_triggered(event, source.scene, frames)
             for event in source.events
@@ -47,6 +46,23 @@ def resolve_cell(source: CellSource) -> CellConfig:
         ),
         engine=engine,
     )
+
+
+def _numerics(source: NumericsSource) -> Numerics:
+    return shared(Numerics.model_construct(**dict(source)))
+
+
+def _record(source: Record) -> CellRecord:
+    return CellRecord.model_validate(source.model_dump(by_alias=True))
+
+
+def _record_elsewhere(source: Record) -> CellRecord:
+    """Another engine's log has velocities: whoever judges it has nothing else of its dynamics."""
+    return CellRecord.model_validate(source.model_dump(by_alias=True) | {"velocities": True})
+
+
+def _study(source: Study) -> CellStudy:
+    return CellStudy(mistake=source.mistake)
 
 
 def engine_of(source: CellSource) -> CellEngine | None:

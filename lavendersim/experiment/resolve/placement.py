@@ -12,8 +12,6 @@ sqrt(2 g h) dt, hence phases 0..15/16 sample where in a step the impact falls.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 from fractions import Fraction
 
 from lavendersim.cell.body import Release
@@ -32,13 +30,21 @@ class SceneError(ValueError):
         self.path = path
 
 
-@contextmanager
-def below(*steps: str | int) -> Iterator[None]:
+class below:  # noqa: N801 - a context manager, called like a function; it is entered for each body
     """Put these steps before the path of a SceneError that comes from within."""
-    try:
-        yield
-    except SceneError as error:
-        raise SceneError((*steps, *error.path), str(error)) from None
+
+    __slots__ = ("_steps",)
+
+    def __init__(self, *steps: str | int) -> None:
+        self._steps = steps
+
+    def __enter__(self) -> None:
+        """Nothing is to be done."""
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        """Raise the error with its whole path."""
+        if isinstance(error, SceneError):
+            raise SceneError((*self._steps, *error.path), str(error)) from None
 
 
 def released_position(

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
 
 from lavendersim.cell.numerics import Numerics
-from lavendersim.experiment.text.node import UNWRITTEN, Node, graft
+from lavendersim.experiment.text.node import UNWRITTEN, Mark, Node, graft
 from lavendersim.quantities.scalars import Ratio
 
 DEFAULT: Final = Numerics()
@@ -54,7 +55,10 @@ PRESETS: Final[MappingProxyType[str, Numerics]] = MappingProxyType(
 
 def specified_numerics(root: Node) -> tuple[str, dict[str, Node]]:
     """Return the preset that a config names, and the values beside it, as written."""
-    numerics = root.get("numerics")
+    return _specified(root.get("numerics"))
+
+
+def _specified(numerics: Node) -> tuple[str, dict[str, Node]]:
     values = dict(numerics.entries)
     preset = values.pop("preset", numerics)
     return preset.text or "default", values
@@ -74,19 +78,27 @@ def with_preset(root: Node) -> Node:
 
     null is a value for `tolerance` (never stop early) and says nothing anywhere else.
     """
-    numerics = root.get("numerics")
-    name, values = specified_numerics(root)
+    whole = _with_preset(root.get("numerics"), root.mark)
+    return root if whole is None else graft(root, ("numerics",), whole)
+
+
+@lru_cache(maxsize=64)  # by the node itself: cells of a sweep of other things have one
+def _with_preset(numerics: Node, otherwise: Mark) -> Node | None:
+    """Return numerics with the preset's numbers; None: refused by the model.
+
+    otherwise: where they stand that are not written.
+    """
+    name, values = _specified(numerics)
     named = PRESETS.get(name)
     wrong = numerics and numerics.text is None and not numerics.entries
     if named is None or wrong:
-        return root  # refused by the model
+        return None
     entries = {
         key: Node(Ratio(value) if isinstance(value, Fraction) else value, UNWRITTEN)
         for key, value in named
     }
     given = {k: v for k, v in values.items() if v.content is not None or k == "tolerance"}
-    whole = replace(
-        numerics or Node({}, root.mark),
+    return replace(
+        numerics or Node({}, otherwise),
         content=entries | {"preset": Node(name, UNWRITTEN)} | given,
     )
-    return graft(root, ("numerics",), whole)

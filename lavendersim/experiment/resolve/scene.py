@@ -95,7 +95,8 @@ def _body(body: Body, scene: Scene, gravity: Vector3, timestep: Fraction) -> Cel
     else:
         assert body.position is not None
         position = body.position
-    placed: CellBody = CellBody.of(**matter | {"position": position, "release": body.release})
+    release = None if body.release is None else shared(body.release)
+    placed: CellBody = CellBody.of(**matter | {"position": position, "release": release})
     return placed
 
 
@@ -125,7 +126,7 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> dict[str, Any]:
 
     by_effect = {key.name: key.resolve(getattr(body, key.name), turned) for key in BODY_KEYS}
     return {
-        "shape": shape,
+        "shape": shared(shape),
         "fixed": fixed,
         "mass": mass,
         "density": body.density,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import tracemalloc
 
-from lavendersim.cell.shared_parts import shared
+from lavendersim.cell.shared_parts import made_once, shared
 from lavendersim.cell.surface import Surface
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner.cell_jobs import Prepared, prepare
@@ -51,7 +51,12 @@ def test_cells_that_differ_in_a_mass_have_the_same_numerics_and_surfaces() -> No
     one, other = (cell.config for cell in prepared(8).cells[::4])
     assert one.scene.bodies["ball"].mass != other.scene.bodies["ball"].mass
     assert one.numerics is other.numerics
-    assert one.scene.bodies["ball"].surface is other.scene.bodies["ball"].surface
+    for part in ("surface", "shape", "release"):
+        first, second = (getattr(config.scene.bodies["ball"], part) for config in (one, other))
+        assert first is not None
+        assert first is second
+    assert one.record is other.record
+    assert one.study is other.study
 
 
 def test_which_fields_bodies_were_given_is_kept_once() -> None:
@@ -66,3 +71,21 @@ def test_parts_that_differ_in_a_bit_are_not_taken_for_equal() -> None:
     assert plus == minus
     assert shared(plus) is not shared(minus)
     assert shared(Surface.model_construct(friction=0.0)) is shared(plus)
+
+
+def doubled(surface: Surface) -> Surface:
+    return Surface.model_construct(friction=2.0 * surface.friction)
+
+
+def halved(surface: Surface) -> Surface:
+    return Surface.model_construct(friction=0.5 * surface.friction)
+
+
+def test_what_is_made_of_equal_parts_is_made_once_and_of_others_by_itself() -> None:
+    one, same, other = (Surface.model_construct(friction=mu) for mu in (0.25, 0.25, 0.5))
+    assert made_once(one, doubled) is made_once(same, doubled)
+    assert made_once(one, doubled).friction == 0.5
+    assert made_once(other, doubled).friction == 1.0
+    assert made_once(one, halved).friction == 0.125
+    zero = made_once(Surface.model_construct(friction=-0.0), doubled)
+    assert made_once(Surface.model_construct(friction=0.0), doubled) is not zero

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from lavendersim.experiment.checks.reading import Reading, same_value
-from lavendersim.experiment.text.node import Mark, Node
+from lavendersim.experiment.models.experiment import CellSource, NumericsSource
+from lavendersim.experiment.text.node import Mark, Node, graft
 from lavendersim.experiment.text.parse import parse
 from lavendersim.experiment.text.place import Place
 from lavendersim.experiment.text.report import Report
@@ -114,3 +115,51 @@ def test_a_selection_has_values_of_its_axis() -> None:
         config(**swept, expect=claim.replace("VALUE", "[1/100, §1/300]")),
         "dt: 1/300 is not among the swept values 1/100, 1/200",
     )
+
+
+def cell_source(root: Node) -> CellSource:
+    """Read the part of a config that a cell is made of, and note it."""
+    report = Report("f")
+    reading = Reading(root, (), report)
+    found = reading.read(CellSource, only=CellSource.model_fields)
+    assert found is not None
+    assert report.close_round()
+    reading.keep(found)
+    return found
+
+
+def test_numerics_of_one_node_are_read_once_and_those_of_another_anew() -> None:
+    scene = f"scene: {{bodies: {{{FLOOR}, {BALL}}}}}\nduration: 1\n"
+    text = f"{scene}numerics: {{timestep: 1/100, sweeps: 7}}"
+    root = parse(text.encode(), Report(""))
+    assert root is not None
+    longer = graft(root, ("duration",), Node(2.0, root.mark))
+    one, other = cell_source(root), cell_source(longer)
+    assert (one.duration, other.duration) == (1.0, 2.0)
+    assert one.numerics is other.numerics
+    swept = cell_source(graft(root, ("numerics", "sweeps"), Node(8, root.mark)))
+    assert isinstance(one.numerics, NumericsSource)
+    assert isinstance(swept.numerics, NumericsSource)
+    assert (one.numerics.sweeps, swept.numerics.sweeps) == (7, 8)
+    assert one.numerics == NumericsSource(timestep=one.numerics.timestep, sweeps=7)
+
+
+def test_what_is_not_asked_for_is_not_read_though_it_is_known() -> None:
+    text = f"scene: {{bodies: {{{FLOOR}, {BALL}}}}}\nduration: 1\nnumerics: {{sweeps: 7}}"
+    root = parse(text.encode(), Report(""))
+    assert root is not None
+    cell_source(root)
+    fields = CellSource.model_fields.keys() - {"numerics"}
+    found = Reading(root, (), Report("")).read(CellSource, only=fields)
+    assert found is not None
+    assert found.numerics == "default"
+
+
+def test_numerics_that_are_refused_are_refused_in_every_cell() -> None:
+    bodies = f"{FLOOR}, {BALL}"
+    swept = "{e: {path: duration, values: [1, 2]}}"
+    found = refusals(
+        f"scene: {{bodies: {{{bodies}}}}}\nduration: 1\nsweep: {swept}\nnumerics: {{sweeps: -1}}"
+    )
+    assert len(found) == 1
+    assert "sweeps" in found[0]
