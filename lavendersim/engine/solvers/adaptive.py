@@ -30,7 +30,9 @@ from ..spec import Spec
 from .iteration import Iteration
 from .newton.alart_curnier import make_alart_curnier
 from .newton.envelope import allocate_envelope
+from .newton.inside_cones import make_begin_again, serves
 from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, step_cost
+from .newton.rounds import SOFTEST
 from .packed.late import FIRST, Packing, make_sweep_late, packs_late
 from .packed.layout import PackedContacts, allocate_packed
 from .solver import Solver, no_workspace
@@ -67,7 +69,9 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
         rows = 6 * bodies
         entries = min(rows * (rows + 1) // 2, MOST_ENTRIES)
         upper = entries if row_terms(spec).frictional else 0
-        return allocate_envelope(bodies, contacts, entries, () if packed is None else packed, upper)
+        inside = contacts if serves(spec) else 0
+        sweeping = () if packed is None else packed
+        return allocate_envelope(bodies, contacts, entries, sweeping, upper, inside)
     return no_workspace(spec, bodies, contacts) if packed is None else Swept(packed)
 
 
@@ -133,6 +137,8 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
     chooses = has_hook(spec, "choose_impulses")
     packs, slides = put_back is not None, row_terms(spec).frictional
     alart_curnier: Any = make_alart_curnier(spec)
+    from_inside = serves(spec)
+    begin_again: Any = make_begin_again(spec) if from_inside else None
 
     def proceed(system, workspace, params, counters, carry):
         tolerance = max(params.tolerance, 0.0)
@@ -174,8 +180,15 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                     if ends:
                         most *= MORE_STEPS
                         steps += alart_curnier(
-                            system, workspace, unknowns, most, SHARPNESS * tolerance, tolerance
+                            system, workspace, unknowns, most, SHARPNESS * tolerance, tolerance,
+                            SOFTEST,
                         )
+                        if from_inside:
+                            if over:
+                                steps += begin_again(
+                                    system, workspace, unknowns, most,
+                                    SHARPNESS * tolerance, tolerance,
+                                )  # fmt: skip
                 counters.newton_steps += steps
                 if steps > 0:
                     if chooses:
