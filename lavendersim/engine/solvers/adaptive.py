@@ -9,7 +9,8 @@ counted in operations, never in time: equal runs take equal decisions.
 A solve that would end above its tolerance calls it once more, LAST sweeps before the end, whatever
 the sweeps promise: what a step leaves of the error, a cold first one above all, later steps only
 spread. What that call leaves above the tolerance goes to `newton.alart_curnier`, after the last
-sweep again. In a large heap that is not affordable, and the call takes no step.
+sweep again, and what that leaves begins once more from inside the cones, `newton.inside_cones`. In
+a large heap that is not affordable, and the call takes no step.
 
 Without a tolerance nothing but a sweep that changes nothing ends a solve before its last sweep, and
 Newton's method is worth what it would be for a tolerance that is never reached.

@@ -19,6 +19,10 @@ from ...vectors import Vec3
 from .envelope import DOF, SCALED, T1, T2
 
 TINY = 1e-300
+# Softness of a contact, as a share of its own response: a bound on its gain [-]. Gains grow without
+# end as a contact's state is found, and digits of what bodies do with them. It changes the way, not
+# where it ends.
+SOFTNESS = 1e-6
 
 
 class ConePoint(NamedTuple):
@@ -91,15 +95,20 @@ def scaling_of(x, z):
 
 
 @inner
-def unscaled(scaling, y):
-    """Return H^-1 y."""
-    w = scaling.w  # H^-1 = (2 (R w) (R w)^T - R) / b
-    along = 2.0 * (w.x * y.x - w.y * y.y - w.z * y.z)
-    return Vec3(
-        (along * w.x - y.x) / scaling.b,
-        (y.y - along * w.y) / scaling.b,
-        (y.z - along * w.z) / scaling.b,
-    )
+def unscaled(scaling, softness, y):
+    """Return (H + softness)^-1 y; by the axes of H, so that none drowns in another's digits."""
+    w = scaling.w
+    side = sqrt(w.y * w.y + w.z * w.z)
+    stretch = (w.x + side) * (w.x + side)
+    out, back = scaling.b * stretch + softness, scaling.b / stretch + softness
+    around = scaling.b + softness
+    if side == 0.0:
+        return Vec3(y.x / around, y.y / around, y.z / around)
+    u, v = w.y / side, w.z / side
+    along = u * y.y + v * y.z
+    p, q = 0.5 * (y.x + along) / out, 0.5 * (y.x - along) / back
+    rest = (u * y.z - v * y.y) / around
+    return Vec3(p + q, u * (p - q) - v * rest, v * (p - q) + u * rest)
 
 
 @inner
@@ -120,7 +129,7 @@ def to_boundary(x, d):
 
 
 def make_gain(spec: Spec) -> Any:
-    """Return `kernel(contact) -> Gain`: T H^-1 C^-1 T, with C = I - e_n d^T.
+    """Return `kernel(contact) -> Gain`: T (H + softness)^-1 C^-1 T, with C = I - e_n d^T.
 
     T brings circular cones back to Coulomb's, and d is the direction of slip, by which the shift
     grows; contact.scale: 1, or 0 where the shift is taken to stay.
@@ -128,16 +137,17 @@ def make_gain(spec: Spec) -> Any:
     cone_point = make_cone_point(spec)
 
     def gain(contact):
+        softness = SOFTNESS / contact.inv_k
         p = cone_point(
             contact, contact.lambda_n, contact.lambda_1, contact.lambda_2,
             contact.velocity_n, contact.velocity_1, contact.velocity_2,
         )  # fmt: skip
         scaling = scaling_of(p.x, p.z)
-        normal = unscaled(scaling, Vec3(1.0, 0.0, 0.0))
+        normal = unscaled(scaling, softness, Vec3(1.0, 0.0, 0.0))
         if not p.frictional:
             return Gain(normal.x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        one = unscaled(scaling, Vec3(0.0, 1.0, 0.0))
-        two = unscaled(scaling, Vec3(0.0, 0.0, 1.0))
+        one = unscaled(scaling, softness, Vec3(0.0, 1.0, 0.0))
+        two = unscaled(scaling, softness, Vec3(0.0, 0.0, 1.0))
         side = sqrt(p.z.y * p.z.y + p.z.z * p.z.z)
         d_1, d_2 = 0.0, 0.0
         if side > 0.0:

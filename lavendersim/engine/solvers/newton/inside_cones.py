@@ -23,9 +23,10 @@ from ...residual import make_residual
 from ...row_terms import by_friction, row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
-from ...vectors import Vec3
+from ...vectors import Vec3, plus_scaled
 from .alart_curnier import make_alart_curnier
 from .cone_scaling import (
+    SOFTNESS,
     TINY,
     determinant,
     make_cone_point,
@@ -159,7 +160,10 @@ def make_find_direction(spec: Spec) -> Any:
             -inverse * x.y - z.y - change_1,
             -inverse * x.z - z.z - change_2,
         )
-        return p, unscaled(scaling_of(x, z), left), Vec3(rise, change_1, change_2)
+        softness = SOFTNESS / contact.inv_k
+        dx = unscaled(scaling_of(x, z), softness, left)
+        dz = Vec3(rise, change_1, change_2)
+        return p, dx, plus_scaled(dz, softness, dx)
 
     direction = kernel(direction, spec)
 
@@ -254,20 +258,14 @@ def make_choose_length(spec: Spec) -> Any:
     return kernel(choose_length, spec), mean_and_least
 
 
-def make_from_inside(spec: Spec) -> Any:
-    """Return `kernel(system, workspace, size, most, tolerance) -> steps`.
+def make_factorise_inside(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, size, workspace, share) -> whether` there is a factor.
 
-    size: of `step_cost`; most: steps; tolerance: residual to be reached [m/s]. What is left has the
-    least residual of the way; impulses and velocities are consistent with each other.
+    share: of the shift's change with slip that the step knows of, 1 or 0.
     """
-    residual, assemble_mass = make_residual(spec), make_assemble_mass(spec)
     gain = make_gain(spec)
     assemble = make_assemble(spec, gain, scale=make_scale_by_gain(spec))
     assemble_transposed = make_assemble(spec, gain, scale=make_scale_by_gain_transposed(spec))
-    begin_inside, find_direction = make_begin_inside(spec), make_find_direction(spec)
-    choose_length, mean_and_least = make_choose_length(spec)
-    set_impulse, keep = make_set_impulse(spec), make_keep(spec)
-    restore_best = make_restore(spec, "best", set_impulse)
 
     def factorise_inside(contacts, count, size, workspace, share):
         for c in range(count):
@@ -279,7 +277,21 @@ def make_from_inside(spec: Spec) -> Any:
         assemble(contacts, count, size, workspace)
         return factorise_lu(size, workspace)
 
-    factorise_inside = kernel(factorise_inside, spec)
+    return kernel(factorise_inside, spec)
+
+
+def make_from_inside(spec: Spec) -> Any:
+    """Return `kernel(system, workspace, size, most, tolerance) -> steps`.
+
+    size: of `step_cost`; most: steps; tolerance: residual to be reached [m/s]. What is left has the
+    least residual of the way; impulses and velocities are consistent with each other.
+    """
+    residual, assemble_mass = make_residual(spec), make_assemble_mass(spec)
+    factorise_inside = make_factorise_inside(spec)
+    begin_inside, find_direction = make_begin_inside(spec), make_find_direction(spec)
+    choose_length, mean_and_least = make_choose_length(spec)
+    set_impulse, keep = make_set_impulse(spec), make_keep(spec)
+    restore_best = make_restore(spec, "best", set_impulse)
 
     def take(contacts, count, velocities, workspace, length):
         for c in range(count):
