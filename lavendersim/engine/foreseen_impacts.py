@@ -127,9 +127,10 @@ def make_foresee(spec: Spec) -> Any:
             if contact.phi <= params.slop + CLOSED * turned * left:
                 pressed += turned
         leaves = v > least + pressed and contact.phi + left * (v - 0.5 * pressed) > params.slop
+        comes_back = False  # too slowly for an impact, as the part showed when it was made before
         if overlooks:
-            leaves = leaves and pair.whole == 0
-        if leaves and not drawn:
+            comes_back = pair.whole == 1
+        if leaves and not (drawn or comes_back):
             contact.waits = 1
         ahead, slow = False, most
         if gap > params.slop:
@@ -144,10 +145,11 @@ def make_foresee(spec: Spec) -> Any:
                 ahead = gap > 0.0 or (due >= FLIGHT * params.timestep and not inside)
                 if ahead and due < left:
                     contact.waits, contact.due = 1, due
-                elif ahead and e > 0.0 and contact.phi <= params.slop:
+                elif ahead and e > 0.0 and contact.phi <= params.slop and not comes_back:
                     contact.waits = REBOUNDS  # it flies, and meets later
         if turns:
-            if (ahead or contact.waits == 1) and contact.due == NEVER and gap > 0.0:
+            waits = (ahead or contact.waits == 1) and not comes_back
+            if waits and contact.due == NEVER and gap > 0.0:
                 # Surfaces that turn may come nearer by as much as this: their shapes decide.
                 ma, mb = motion[contact.a], motion[contact.b]
                 spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)

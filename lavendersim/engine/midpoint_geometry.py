@@ -23,6 +23,8 @@ from .step_terms import step_terms
 
 # Contacts are looked for at the middle up to this share of a body's size apart.
 APART = 0.1
+# A point of another feature that lies within this share of it is the contact's own.
+NEAR = 0.02
 # Least cosine of a contact's normal at the middle and at the start, if its feature is another.
 AGREES = 0.5
 
@@ -95,17 +97,47 @@ def make_nearest(spec: Spec) -> Any:
     return kernel(nearest, spec)
 
 
+def make_renamed(spec: Spec) -> Any:
+    """Return `kernel(contacts, rows, c, manifold, found, reach) -> index` of a point, or -1.
+
+    The nearest to contact c, within `reach` [m], of those that no contact has, of a pair with the
+    contacts from rows[0] on, before rows[1]. Where edges of two bodies lie above each other, as of
+    bricks as wide as each other, it is round-off that says whose feature a point is.
+    """
+
+    def renamed(contacts, rows, c, manifold, found, reach):
+        best, least = -1, reach * reach
+        contact, n = contacts[c], manifold_normal(manifold)
+        if contact.at_nx * n[0] + contact.at_ny * n[1] + contact.at_nz * n[2] < AGREES:
+            return best
+        for k in range(found):
+            point, named = manifold.points[k], False
+            for other in range(rows[0], rows[1]):
+                named = named or contacts[other].feature == point.feature
+            if named:
+                continue
+            dx, dy, dz = point.x - contact.x, point.y - contact.y, point.z - contact.z
+            squared = dx * dx + dy * dy + dz * dz
+            if squared < least:
+                best, least = k, squared
+        return best
+
+    return kernel(renamed, spec)
+
+
 def make_look(spec: Spec) -> Any:
     """Return `kernel(state, count, poses, workspace)`: contacts as they are where bodies stand.
 
     Flat faces that turn pass from face on face to edge on face: of a pair of them that has none of
-    its features any more each contact is at the nearest new one. Any other point that the manifold
-    no longer has stays on its two bodies: see `stay`.
+    its features any more each contact is at the nearest new one, of another pair of them where a
+    new one is as near as its own would be. Any other point that the manifold no longer has stays on
+    its two bodies: see `stay`.
     """
     manifold = make_manifold(spec, spec.shape_pairs)
     compound, place_parts = made_once(spec, "place_parts")
     swept, stay = row_terms(spec).swept, make_stay(spec)
     ordered, nearest = step_terms(spec).ordered_impacts, make_nearest(spec)
+    renamed = make_renamed(spec)
     overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
     marks, mark_middle = made_once(spec, "mark_middle")
     arms = row_terms(spec).bilateral and row_terms(spec).levers
@@ -147,8 +179,12 @@ def make_look(spec: Spec) -> Any:
                 for k in range(found):
                     if points[k].feature == contact.feature:
                         best = k
-                if flat and found > 0 and not persists:
-                    best = nearest(contact, scratch.manifold, found)
+                if best < 0 and flat and found > 0:
+                    if persists:
+                        rows = first, last
+                        best = renamed(contacts, rows, c, scratch.manifold, found, NEAR * size)
+                    else:
+                        best = nearest(contact, scratch.manifold, found)
                 if best >= 0:
                     point = points[best]
                     if ropes:

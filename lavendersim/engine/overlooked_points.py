@@ -23,6 +23,7 @@ from .approach import CREEP, NEVER, OVERLAP, make_forced, make_rate, normal
 from .compile import kernel
 from .effects import made_once
 from .foreseen_impacts import FLIGHT, make_is_impact
+from .integrate import ALWAYS
 from .records import SPHERE
 from .spec import Spec
 from .step_terms import step_terms
@@ -75,7 +76,7 @@ def make_look_over(spec: Spec) -> Any:
     """Return `kernel(state, poses, overlooked, params) -> length`, of a part that is solved.
 
     poses: rows of the bodies as the part began. length: 0 where nothing overlaps; else the longest
-    that the part may be when it is made again [s].
+    that the part may be when it is made again [s]. Its bodies are classified (`integrate`).
     """
     rate, turns = make_rate(spec), step_terms(spec).turns
     forced, is_impact = make_forced(spec), make_is_impact(spec)
@@ -106,6 +107,18 @@ def make_look_over(spec: Spec) -> Any:
 
     meets = kernel(meets, spec)
 
+    def share(m):
+        # Of what the part changes of a body's velocity, how much it moves by: see `displace`.
+        return 1.0 if m.carried == ALWAYS else 0.5
+
+    share = kernel(share, spec)
+
+    def spin(v, m, share):
+        x, y, z = v.wx - m.wx, v.wy - m.wy, v.wz - m.wz
+        return Vec3(m.wx + share * x, m.wy + share * y, m.wz + share * z)
+
+    spin = kernel(spin, spec)
+
     def look_over(state, poses, overlooked, params):
         pairs, velocities, motion = state.pairs, state.velocities, state.motion
         dt, longest, again = params.dt, NEVER, False
@@ -116,21 +129,21 @@ def make_look_over(spec: Spec) -> Any:
                 continue
             arm_a = minus(position(point), position(poses[a]))
             arm_b = minus(position(point), position(poses[b]))
-            last = rate(n, velocities[a], velocities[b], arm_a, arm_b)
+            va, vb, ma, mb = velocities[a], velocities[b], motion[a], motion[b]
+            first, last = rate(n, ma, mb, arm_a, arm_b), rate(n, va, vb, arm_a, arm_b)
+            across = rate(n, va, mb, arm_a, arm_b)
+            share_a, share_b = share(ma), share(mb)
+            moved = first + share_b * (last - across) - share_a * (first - across)
             limit = -DEEP - max(point.phi, 0.0)
-            if not last * dt < limit:
+            if not moved * dt < limit:
                 continue
-            first = rate(n, motion[a], motion[b], arm_a, arm_b)
             mean = 0.5 * (first + last)
             if turns:
-                # By the spins of its end, as bodies are carried, and by their means, as they fly.
-                va, vb, ma, mb = velocities[a], velocities[b], motion[a], motion[b]
-                wa, wb = Vec3(va.wx, va.wy, va.wz), Vec3(vb.wx, vb.wy, vb.wz)
-                last += (turned(n, wb, arm_b, dt) - turned(n, wa, arm_a, dt)) / dt
-                wa = Vec3(0.5 * (wa.x + ma.wx), 0.5 * (wa.y + ma.wy), 0.5 * (wa.z + ma.wz))
-                wb = Vec3(0.5 * (wb.x + mb.wx), 0.5 * (wb.y + mb.wy), 0.5 * (wb.z + mb.wz))
-                mean += (turned(n, wb, arm_b, dt) - turned(n, wa, arm_a, dt)) / dt
-            if not max(last, mean) * dt < limit:
+                by_a, by_b = spin(va, ma, share_a), spin(vb, mb, share_b)
+                moved += (turned(n, by_b, arm_b, dt) - turned(n, by_a, arm_a, dt)) / dt
+                by_a, by_b = spin(va, ma, 0.5), spin(vb, mb, 0.5)
+                mean += (turned(n, by_b, arm_b, dt) - turned(n, by_a, arm_a, dt)) / dt
+            if not moved * dt < limit:
                 continue
             pair = pairs[point.pair]
             if first > 0.0 or point.waits == 1:

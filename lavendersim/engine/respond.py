@@ -192,6 +192,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                 midway = act_beside(state, count, workspace, params, counters, log)
         if overlooks:
             if lasts and workspace.overlooked.noted[0] > 0:
+                if keeps:
+                    classify(contacts, count, motion, params)
                 poses = workspace.middle.poses if midway else bodies
                 cut = look_over(state, poses, workspace.overlooked, params)
                 if cut > 0.0:

@@ -32,7 +32,9 @@ def make_complete(spec):
 
     def complete_torsion(contact, pair, x, y, z):
         contact.torsional = pair.torsional_friction
-        contact.k_torsion = contact.nx * x + contact.ny * y + contact.nz * z
+        k = contact.nx * x + contact.ny * y + contact.nz * z
+        # A joint's row of a torque alone has no normal: nothing resists there, and nothing divides.
+        contact.k_torsion = k if k > 0.0 else 1.0
         contact.psi_n = 0.0
 
     return kernel(complete_torsion, spec)

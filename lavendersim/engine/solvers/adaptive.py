@@ -9,7 +9,8 @@ counted in operations, never in time: equal runs take equal decisions.
 A solve that would end above its tolerance calls it once more, LAST sweeps before the end, whatever
 the sweeps promise: what a step leaves of the error, a cold first one above all, later steps only
 spread. What that call leaves above the tolerance goes to `newton.alart_curnier`, after the last
-sweep again. In a large heap that is not affordable, and the call takes no step.
+sweep again, and what that leaves begins once more from inside the cones, `newton.inside_cones`. In
+a large heap that is not affordable, and the call takes no step.
 
 Without a tolerance nothing but a sweep that changes nothing ends a solve before its last sweep, and
 Newton's method is worth what it would be for a tolerance that is never reached.
@@ -30,7 +31,9 @@ from ..spec import Spec
 from .iteration import Iteration
 from .newton.alart_curnier import make_alart_curnier
 from .newton.envelope import allocate_envelope
+from .newton.inside_cones import make_begin_again, serves
 from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, step_cost
+from .newton.rounds import SOFTEST
 from .packed.late import FIRST, Packing, make_sweep_late, packs_late
 from .packed.layout import PackedContacts, allocate_packed
 from .solver import Solver, no_workspace
@@ -67,7 +70,9 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
         rows = 6 * bodies
         entries = min(rows * (rows + 1) // 2, MOST_ENTRIES)
         upper = entries if row_terms(spec).frictional else 0
-        return allocate_envelope(bodies, contacts, entries, () if packed is None else packed, upper)
+        inside = contacts if serves(spec) else 0
+        sweeping = () if packed is None else packed
+        return allocate_envelope(bodies, contacts, entries, sweeping, upper, inside)
     return no_workspace(spec, bodies, contacts) if packed is None else Swept(packed)
 
 
@@ -133,6 +138,8 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
     chooses = has_hook(spec, "choose_impulses")
     packs, slides = put_back is not None, row_terms(spec).frictional
     alart_curnier: Any = make_alart_curnier(spec)
+    from_inside = serves(spec)
+    begin_again: Any = make_begin_again(spec) if from_inside else None
 
     def proceed(system, workspace, params, counters, carry):
         tolerance = max(params.tolerance, 0.0)
@@ -174,8 +181,15 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                     if ends:
                         most *= MORE_STEPS
                         steps += alart_curnier(
-                            system, workspace, unknowns, most, SHARPNESS * tolerance, tolerance
+                            system, workspace, unknowns, most, SHARPNESS * tolerance, tolerance,
+                            SOFTEST,
                         )
+                        if from_inside:
+                            if over:
+                                steps += begin_again(
+                                    system, workspace, unknowns, most,
+                                    SHARPNESS * tolerance, tolerance,
+                                )  # fmt: skip
                 counters.newton_steps += steps
                 if steps > 0:
                     if chooses:

@@ -268,7 +268,9 @@ COHESIVE = SPEC.including("cohesion")
 SPRUNG = SPEC.including("compliance", "contact_spring")
 WHOLE = SPEC.including("overlooked_points")
 COMPLIANT = SPEC.including("compliance")
-FORESEE |= {s: interpreted(make_foresee(s)) for s in (COHESIVE, SPRUNG, WHOLE, COMPLIANT)}
+TURNS_WHOLE = TURNS.including("overlooked_points")
+MORE = COHESIVE, SPRUNG, WHOLE, COMPLIANT, TURNS_WHOLE
+FORESEE |= {spec: interpreted(make_foresee(spec)) for spec in MORE}
 
 
 @pytest.mark.parametrize(("spec", "name"), [(COHESIVE, "cohesion"), (WHOLE, "whole")])
@@ -279,6 +281,15 @@ def test_what_is_drawn_or_whole_stays_when_it_leaves(spec: Spec, name: str) -> N
         assert row.foresee() == (False, value == 0, NEVER)
     far = Row(COHESIVE, cohesion=1.0).moves(1.01 * SLOP, 1.0, 0.0)
     assert far.foresee()[1]
+
+
+@pytest.mark.parametrize("whole", [0, 1])
+def test_what_a_part_has_shown_to_come_back_waits_for_no_guess(whole: int) -> None:
+    """As in `test_what_turns_may_meet_elsewhere_...`: without the guess it would be left out."""
+    row = Row(TURNS_WHOLE, restitution=0.5).moves(2.0 * SLOP, 0.5, -20.0)
+    row.motion["wy"][1] = 1e3
+    row.pairs["whole"] = whole
+    assert row.foresee()[1] == (whole == 0)
 
 
 def test_springs_meet_a_gap_in_time_and_push_without_an_impact() -> None:

@@ -15,7 +15,7 @@ from interpreted import interpreted, records
 from lavendersim.engine import midpoint_geometry
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.scratch import allocate_scratch
-from lavendersim.engine.midpoint_geometry import AGREES, APART
+from lavendersim.engine.midpoint_geometry import AGREES, APART, NEAR
 from lavendersim.engine.record_layout import (
     allocate_bodies,
     allocate_pairs,
@@ -232,6 +232,22 @@ def test_flat_faces_that_pass_to_an_edge_take_their_contacts_along() -> None:
         nearest = places[np.linalg.norm(places - start, axis=1).argmin()]
         np.testing.assert_array_equal(vector(row), nearest)
         np.testing.assert_array_equal(vector(row, "n"), normal)
+
+
+@pytest.mark.parametrize(("shift", "own"), [(0.001, True), (0.01, False)])
+def test_a_point_of_another_name_is_the_contact_where_it_is_near(shift: float, own: bool) -> None:
+    """A cube on its like, pushed along x: of the corners ahead the lower cube has the edge.
+
+    Their points stay behind by the shift: less than NEAR of its size, 3.5 mm, or more.
+    """
+    scene = Touching("box_box", {**CUBE, "centre": (0.0, 0.0, -0.1), "inv_m": 0.0}, CUBE)
+    assert 0.001 < NEAR * scene.bodies["bound"].min() < 0.01
+    ahead = int(np.flatnonzero(scene.contacts["x"] > 0.0)[0])
+    scene.contacts["feature"][ahead] = -1
+    scene.moves(1, (shift, 0.0, 0.0))
+    row = scene.look()[ahead]
+    assert row["x"] == pytest.approx(0.1 if own else 0.1 + shift, abs=1e-12)
+    assert row["y"] == pytest.approx(row["at_y"], abs=1e-12)
 
 
 def test_a_normal_that_has_turned_away_is_another_contact(rng) -> None:

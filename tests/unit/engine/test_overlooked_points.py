@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from lavendersim.engine.integrate import ALWAYS, LASTING
 from lavendersim.engine.memory import Overlooked
 from lavendersim.engine.overlooked_points import DEEP, make_forget_whole, make_look_over
 from lavendersim.engine.record_layout import (
@@ -81,6 +82,15 @@ def test_a_point_left_out_that_ends_inside_makes_its_manifold_whole() -> None:
     assert part.look({"vz": -1.0}, {"vz": -1.0}) == 0.0
     make_forget_whole(SPEC)(part.pairs, 1)
     assert part.pairs["whole"][0] == 0
+
+
+@pytest.mark.parametrize(("carried", "again"), [(0, False), (LASTING, False), (ALWAYS, True)])
+def test_a_body_goes_as_it_is_carried(carried: int, again: bool) -> None:
+    """By the mean of +2 and -4 DEEP a part it ends one DEEP inside, by its last velocity four."""
+    part = Part(0.01 * DEEP, 1)
+    part.state.motion["carried"][1] = carried
+    found = part.look({"vz": 2.0 * DEEP / DT}, {"vz": -4.0 * DEEP / DT})
+    assert (found > 0.0) == again
 
 
 RETURNS = ({"wy": -1.0}, {"wy": 5.0})  # it rises by w ARM, and comes down five times as fast

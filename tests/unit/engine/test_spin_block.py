@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from drawn_contacts import Drawn, drawn, stacked, views
+from drawn_contacts import Drawn, drawn, put_vector, stacked, views
 from interpreted import interpreted
 from plain_facts import one_row
 
 from lavendersim.engine import spin_block
+from lavendersim.engine.solvers.newton.torques import make_accept_torques
 from lavendersim.engine.spec import Spec
 
 BOTH = Spec(effects=("friction", "rolling_friction", "rotation", "torsional_friction"))
@@ -53,6 +54,20 @@ def test_responses_are_those_of_the_inverse_inertias(rng) -> None:
     assert row.k_roll == pytest.approx(np.linalg.eigvalsh(s[1:, 1:])[-1], rel=1e-13)
     assert (row.torsional, row.rolling) == (C, C)
     assert not found.psi.any()
+
+
+def test_a_row_without_a_normal_turns_nothing_and_stays_finite(rng) -> None:
+    """As a motor's row of a torque alone, in a scene with torsional friction elsewhere."""
+    found = Turning(TORSION, rng)
+    put_vector(found.scene.contacts[0], "n", np.zeros(3))
+    pair = one_row(torsional_friction=0.0, rolling_friction=0.0)
+    interpreted(spin_block.make_complete_spin(TORSION))(found.contact, found.va, found.vb, pair)
+    before = stacked(found.scene.velocities)
+    solve = interpreted(make_accept_torques(TORSION.including("newton")))
+    with np.errstate(all="raise"):
+        solve(found.contact, found.va, found.vb)
+    assert found.contact.psi_n == 0.0
+    np.testing.assert_array_equal(stacked(found.scene.velocities), before)
 
 
 @pytest.mark.parametrize("fixed", [(), (0,), (1,)])

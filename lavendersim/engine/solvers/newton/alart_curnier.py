@@ -150,7 +150,7 @@ def make_alart_curnier(spec: Spec) -> Any:
     restore_start = make_restore(spec, "start", set_impulse)
     restore_best = make_restore(spec, "best", set_impulse)
 
-    def alart_curnier(system, workspace, size, most, tolerance, enough):
+    def alart_curnier(system, workspace, size, most, tolerance, enough, softness):
         contacts, count, velocities = system.contacts, system.count, system.velocities
         assemble_mass(system.bodies, size, workspace)
         least, _ = residual(contacts, count, velocities)
@@ -158,7 +158,7 @@ def make_alart_curnier(spec: Spec) -> Any:
             return 0
         now = least
         keep(contacts, count)
-        softness, cut, good, again = SOFTEST, CUT, 0.0, False
+        cut, good, again = CUT, 0.0, False
         steps, failed = 0, 0
         while steps < most and failed < FAILURES and softness <= MOST_SOFT:
             # Taken to be at rest, contacts have no shift.

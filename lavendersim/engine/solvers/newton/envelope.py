@@ -45,13 +45,22 @@ class Envelope(NamedTuple):
     rows: np.ndarray  # (9, 6) rows n, t1, t2 of one contact: body A's, body B's, and scaled
     shifts: FixedPoint  # (contacts,), see `shifts`
     upper: np.ndarray  # (capacity,) entries above the diagonal by columns, as `values`; see `lu`
+    inside: np.ndarray  # (contacts, 6) see `inside_cones`; (0, 6) where it is not used
     packed: Any = ()  # what sweeps between two calls work in, where they pack contacts
 
 
 def allocate_envelope(
-    bodies: int, contacts: int, capacity: int, packed: Any = (), upper: int = 0
+    bodies: int,
+    contacts: int,
+    capacity: int,
+    packed: Any = (),
+    upper: int = 0,
+    inside: int = 0,
 ) -> Envelope:
-    """Return the arrays for so many bodies, contacts and matrix entries; upper: above as well."""
+    """Return the arrays for so many bodies, contacts and matrix entries.
+
+    upper: entries above the diagonal; inside: contacts of which methods from inside know more.
+    """
     rows = DOF * bodies
     return Envelope(
         np.zeros(bodies, np.int64),
@@ -69,6 +78,7 @@ def allocate_envelope(
         np.zeros((9, DOF)),
         allocate_fixed_point(contacts),
         np.zeros(upper),
+        np.zeros((inside, 6)),
         packed,
     )
 

@@ -7,45 +7,23 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from drawn_contacts import Drawn, drawn, stacked, views
-from interpreted import interpreted, records
+from drawn_contacts import stacked
+from drawn_systems import COUNT, assert_coulombs_law, drawn_system, impulses
+from interpreted import interpreted
 
 from lavendersim.engine.residual import make_residual
 from lavendersim.engine.solvers.newton import alart_curnier, coulomb_response
-from lavendersim.engine.solvers.newton.envelope import DOF, allocate_envelope
-from lavendersim.engine.solvers.newton.method import step_cost
+from lavendersim.engine.solvers.newton.envelope import DOF
 from lavendersim.engine.solvers.newton.minimise import make_assemble_mass
 from lavendersim.engine.solvers.newton.response import PLAIN, make_start
-from lavendersim.engine.solvers.solver import ContactSystem
+from lavendersim.engine.solvers.newton.rounds import SOFTEST
 from lavendersim.engine.spec import Spec
 
 SPEC = Spec(effects=("friction", "newton", "rotation"), solver="adaptive")
-# Bodies between each other and on a floor, in more points than hold them.
-PAIRS = [(0, 1), (0, 1), (1, 2), (2, 1), (0, 2), (2, 3), (3, 0), (0, 3), (0, 3)]
-COUNT = len(PAIRS)
-
-
-def prepared(rng: np.random.Generator):
-    """Return drawn contacts, their system, and a workspace that is laid out for them."""
-    scene = drawn(SPEC, rng, PAIRS)
-    # Bodies of any inertia that anything pushes at any place jam with more friction.
-    scene.contacts["mu"] *= 0.2
-    for axis in "12":
-        scene.contacts[f"lambda_{axis}"] *= 0.2
-    bodies, velocities, contacts = views(scene)
-    workspace = records(allocate_envelope(4, COUNT, 2000, upper=2000))
-    size, _ = interpreted(step_cost)(
-        ContactSystem(contacts, None, COUNT, bodies, velocities), workspace
-    )
-    return scene, ContactSystem(contacts, None, COUNT, bodies, velocities), workspace, size
-
-
-def impulses(scene: Drawn, name: str = "lambda") -> np.ndarray:
-    return np.stack([scene.contacts[f"{name}_{axis}"] for axis in "n12"], axis=1)
 
 
 def test_a_root_balances_momentum(rng) -> None:
-    scene, system, workspace, size = prepared(rng)
+    scene, system, workspace, size, _ = drawn_system(SPEC, rng)
     interpreted(make_assemble_mass(SPEC))(system.bodies, size, workspace)
     interpreted(make_start(SPEC))(system.contacts, COUNT, system.velocities, 0.1, True, PLAIN)
     steps, found = interpreted(alart_curnier.make_find_root(SPEC))(
@@ -65,47 +43,32 @@ def test_a_root_balances_momentum(rng) -> None:
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_rounds_end_at_coulombs_law(seed: int) -> None:
     """Of problems that are found from far; of others it is asked only what sweeps leave."""
-    scene, system, workspace, size = prepared(np.random.default_rng(seed))
-    free = scene.motion - scene.inverse @ scene.jacobian.T @ impulses(scene).ravel()
+    drawn = drawn_system(SPEC, np.random.default_rng(seed))
     solve = interpreted(alart_curnier.make_alart_curnier(SPEC))
-    assert 0 < solve(system, workspace, size, 400.0, 1e-11, 1e-9) < 400
-    found = impulses(scene)
-    motion = free + scene.inverse @ scene.jacobian.T @ found.ravel()
-    np.testing.assert_allclose(stacked(scene.velocities), motion, atol=1e-12)
-    w = (scene.jacobian @ motion).reshape(-1, 3)
-    w[:, 0] += scene.contacts["target"]
-    # Residuals of 1e-9 m/s, of impulses too by masses of some kilograms.
-    near = 1e-8
-    for impulse, velocity, mu in zip(found, w, scene.contacts["mu"], strict=True):
-        push, slip = np.hypot(*impulse[1:]), np.hypot(*velocity[1:])
-        assert min(impulse[0], velocity[0]) == pytest.approx(0.0, abs=near)
-        assert push <= mu * impulse[0] + 1e-14
-        if slip > 1e-6 and impulse[0] > 1e-6:  # it slides, and friction opposes it
-            assert push == pytest.approx(mu * impulse[0], abs=near)
-            np.testing.assert_allclose(impulse[1:] * slip, -push * velocity[1:], atol=near)
-    assert (found[:, 0] > 1e-6).any()
+    steps = solve(drawn.system, drawn.workspace, drawn.size, 400.0, 1e-11, 1e-9, SOFTEST)
+    assert 0 < steps < 400
+    assert_coulombs_law(drawn)
 
 
 @pytest.mark.parametrize("seed", [0, 4])
 def test_what_is_not_found_is_left_no_worse(seed: int) -> None:
     """Draws that may jam: rounds that went astray are taken back, with their velocities."""
-    scene, system, workspace, size = prepared(np.random.default_rng(seed))
-    free = scene.motion - scene.inverse @ scene.jacobian.T @ impulses(scene).ravel()
-    residual = interpreted(make_residual(SPEC))
+    drawn = drawn_system(SPEC, np.random.default_rng(seed))
+    system, residual = drawn.system, interpreted(make_residual(SPEC))
     before, _ = residual(system.contacts, COUNT, system.velocities)
-    interpreted(alart_curnier.make_alart_curnier(SPEC))(system, workspace, size, 30.0, 1e-11, 1e-9)
+    solve = interpreted(alart_curnier.make_alart_curnier(SPEC))
+    solve(system, drawn.workspace, drawn.size, 30.0, 1e-11, 1e-9, SOFTEST)
     after, _ = residual(system.contacts, COUNT, system.velocities)
     assert after <= before
-    motion = free + scene.inverse @ scene.jacobian.T @ impulses(scene).ravel()
     # Velocities of 10 m/s at most, as each of some twenty rounds is added and taken back.
-    np.testing.assert_allclose(stacked(scene.velocities), motion, atol=1e-11)
+    np.testing.assert_allclose(stacked(drawn.scene.velocities), drawn.motion, atol=1e-11)
 
 
 def test_what_is_solved_is_left_as_it_is(rng) -> None:
-    scene, system, workspace, size = prepared(rng)
+    scene, system, workspace, size, _ = drawn_system(SPEC, rng)
     before = scene.contacts.copy()
     solve = interpreted(alart_curnier.make_alart_curnier(SPEC))
-    assert solve(system, workspace, size, 400.0, 1e-11, 1e3) == 0
+    assert solve(system, workspace, size, 400.0, 1e-11, 1e3, SOFTEST) == 0
     assert (scene.contacts == before).all()
 
 
