@@ -181,7 +181,12 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                     if ends:
                         most *= MORE_STEPS
                         steps += alart_curnier(
-                            system, workspace, unknowns, most, SHARPNESS * tolerance, tolerance,
+                            system,
+                            workspace,
+                            unknowns,
+                            most,
+                            SHARPNESS * tolerance,
+                            tolerance,
                             SOFTEST,
                         )
                         if from_inside:

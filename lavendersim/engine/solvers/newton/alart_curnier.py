@@ -42,7 +42,7 @@ from .minimise import (
     make_take_step,
 )
 from .response import PLAIN, make_start
-from .rounds import EXACTNESS, SOFTEST, STIFFEST
+from .rounds import EXACTNESS, STIFFEST
 
 # Steps of a round at most: those that find every contact's state take a few.
 STEPS_OF_A_ROUND = 12

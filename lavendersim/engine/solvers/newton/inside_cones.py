@@ -145,8 +145,8 @@ def make_find_direction(spec: Spec) -> Any:
         )  # fmt: skip
         x, z = p.x, p.z
         n, one, two = velocity_of(contact, velocities[contact.a], velocities[contact.b])
-        change_n, change_1, change_2 = contact.step_n, 0.0, 0.0
-        rise, side, along = 0.0, 0.0, 0.0
+        change_1, change_2 = 0.0, 0.0
+        side, along = 0.0, 0.0
         if p.frictional:
             change_1 = one - z.y + contact.step_1
             change_2 = two - z.z + contact.step_2

@@ -64,7 +64,7 @@ def test_a_step_is_as_long_as_it_stays_inside(seed: int) -> None:
 @pytest.mark.parametrize("share", [1.0, 0.0])
 @pytest.mark.parametrize("mu", [0.3, 0.0])
 def test_the_gain_is_that_of_dense_algebra(share: float, mu: float, rng) -> None:
-    """T (H + softness)^-1 C^-1 T; without friction the ratio of impulse and velocity, of the normal alone."""
+    """T (H + softness)^-1 C^-1 T; without friction the normal alone."""
     x, z = inside(rng), inside(rng)
     t = 1.0 / mu if mu else 1.0
     contact = SimpleNamespace(
