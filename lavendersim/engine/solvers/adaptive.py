@@ -180,21 +180,13 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                 if slides:
                     if ends:
                         most *= MORE_STEPS
+                        residuals = SHARPNESS * tolerance, tolerance
                         steps += alart_curnier(
-                            system,
-                            workspace,
-                            unknowns,
-                            most,
-                            SHARPNESS * tolerance,
-                            tolerance,
-                            SOFTEST,
+                            system, workspace, unknowns, most, residuals, SOFTEST
                         )
                         if from_inside:
                             if over:
-                                steps += begin_again(
-                                    system, workspace, unknowns, most,
-                                    SHARPNESS * tolerance, tolerance,
-                                )  # fmt: skip
+                                steps += begin_again(system, workspace, unknowns, most, residuals)
                 counters.newton_steps += steps
                 if steps > 0:
                     if chooses:

@@ -135,11 +135,12 @@ def make_find_root(spec: Spec) -> Any:
 
 
 def make_alart_curnier(spec: Spec) -> Any:
-    """Return `kernel(system, workspace, size, most, tolerance, enough) -> steps`.
+    """Return `kernel(system, workspace, size, most, residuals, softness) -> steps`.
 
-    size: of `step_cost`; most: steps; tolerance, enough: residuals to be reached, at best and at
-    least, where the latter is not yet [m/s]. Impulses, torques and velocities leave consistent with
-    each other, at the least residual. None without friction: convex rounds have no shifts there.
+    size: of `step_cost`; most: steps; residuals: to be reached, at best and at least, where the
+    latter is not yet [m/s]; softness: of the first round [-]. Impulses, torques and velocities leave
+    consistent with each other, at the least residual. None without friction: convex rounds have no
+    shifts there.
     """
     if not row_terms(spec).frictional:
         return None
@@ -150,7 +151,8 @@ def make_alart_curnier(spec: Spec) -> Any:
     restore_start = make_restore(spec, "start", set_impulse)
     restore_best = make_restore(spec, "best", set_impulse)
 
-    def alart_curnier(system, workspace, size, most, tolerance, enough, softness):
+    def alart_curnier(system, workspace, size, most, residuals, softness):
+        tolerance, enough = residuals
         contacts, count, velocities = system.contacts, system.count, system.velocities
         assemble_mass(system.bodies, size, workspace)
         least, _ = residual(contacts, count, velocities)

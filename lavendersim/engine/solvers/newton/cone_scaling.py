@@ -63,19 +63,32 @@ def determinant(x):
 
 
 def make_cone_point(spec: Spec) -> Any:
-    """Return `kernel(contact, n, one, two, u_n, u_1, u_2) -> ConePoint`."""
+    """Return `kernel(contact, impulse, velocity) -> ConePoint`; both along n, t1, t2."""
     mixed = row_terms(spec).frictionless
 
-    def cone_point(contact, n, one, two, u_n, u_1, u_2):
+    def cone_point(contact, impulse, velocity):
         frictional = contact.mu > 0.0
         if mixed:
             frictional = frictional and contact.frictional == 1
         if not frictional:
-            return ConePoint(Vec3(n, 0.0, 0.0), Vec3(u_n, 0.0, 0.0), 1.0, False)
+            return ConePoint(Vec3(impulse.x, 0.0, 0.0), Vec3(velocity.x, 0.0, 0.0), 1.0, False)
         mu = contact.mu
-        return ConePoint(Vec3(mu * n, one, two), Vec3(u_n / mu, u_1, u_2), mu, True)
+        x = Vec3(mu * impulse.x, impulse.y, impulse.z)
+        return ConePoint(x, Vec3(velocity.x / mu, velocity.y, velocity.z), mu, True)
 
     return kernel(cone_point, spec)
+
+
+@inner
+def impulse_of(contact):
+    """Return the impulse of a contact."""
+    return Vec3(contact.lambda_n, contact.lambda_1, contact.lambda_2)
+
+
+@inner
+def velocity_inside(contact):
+    """Return the velocity of a contact that is kept inside its cone, with the shift."""
+    return Vec3(contact.velocity_n, contact.velocity_1, contact.velocity_2)
 
 
 @inner
@@ -138,10 +151,7 @@ def make_gain(spec: Spec) -> Any:
 
     def gain(contact):
         softness = SOFTNESS / contact.inv_k
-        p = cone_point(
-            contact, contact.lambda_n, contact.lambda_1, contact.lambda_2,
-            contact.velocity_n, contact.velocity_1, contact.velocity_2,
-        )  # fmt: skip
+        p = cone_point(contact, impulse_of(contact), velocity_inside(contact))
         scaling = scaling_of(p.x, p.z)
         normal = unscaled(scaling, softness, Vec3(1.0, 0.0, 0.0))
         if not p.frictional:

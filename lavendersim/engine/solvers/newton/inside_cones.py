@@ -17,7 +17,7 @@ from math import inf, sqrt
 from typing import Any, NamedTuple
 
 from ...block import make_slip_velocity
-from ...compile import kernel, separate
+from ...compile import inner, kernel, separate
 from ...contact import make_frictionless_velocity
 from ...residual import make_residual
 from ...row_terms import by_friction, row_terms
@@ -29,6 +29,7 @@ from .cone_scaling import (
     SOFTNESS,
     TINY,
     determinant,
+    impulse_of,
     make_cone_point,
     make_gain,
     make_scale_by_gain,
@@ -36,6 +37,7 @@ from .cone_scaling import (
     scaling_of,
     to_boundary,
     unscaled,
+    velocity_inside,
 )
 from .envelope import DOF, OF_A, OF_B, T1, T2
 from .lu import factorise_lu, solve_lu
@@ -49,7 +51,7 @@ MOST = 80
 FINISHING = 40.0
 
 
-class Strategy(NamedTuple):
+class Centring(NamedTuple):
     """How a run is controlled: where friction slides none of them always converges."""
 
     share: float  # of the way to the boundary that a step may go [-]
@@ -57,7 +59,7 @@ class Strategy(NamedTuple):
     power: float  # of what a straight step leaves over: by so much a step centres (Mehrotra 1992)
 
 
-LONG_STEPS, SHORT_STEPS = Strategy(0.995, 0.02, 3.0), Strategy(0.9, 0.1, 1.0)
+LONG_STEPS, SHORT_STEPS = Centring(0.995, 0.02, 3.0), Centring(0.9, 0.1, 1.0)
 LEAST_CENTRING = 1e-6
 # A step that leaves a contact too near the boundary is shortened by this, so often.
 BACK, TRIALS = 0.8, 12
@@ -118,7 +120,7 @@ def make_begin_inside(spec: Spec) -> Any:
             contact = contacts[c]
             root = sqrt(contact.inv_k)
             set_impulse(contact, velocities, unit * root, 0.0, 0.0)
-            p = cone_point(contact, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            p = cone_point(contact, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
             contact.velocity_n = p.mu * unit / root
             contact.velocity_1, contact.velocity_2 = 0.0, 0.0
             contact.step_n, contact.step_1, contact.step_2 = 0.0, 0.0, 0.0
@@ -126,6 +128,18 @@ def make_begin_inside(spec: Spec) -> Any:
             rises[RISE_N], rises[RISE_1], rises[RISE_2] = 0.0, 0.0, 0.0
 
     return kernel(begin_inside, spec)
+
+
+@inner
+def step_of(contact):
+    """Return what a step adds to the impulse of a contact."""
+    return Vec3(contact.step_n, contact.step_1, contact.step_2)
+
+
+@inner
+def rise_of(rises):
+    """Return what a step adds to the velocity of a contact, from its row of `inside`."""
+    return Vec3(rises[RISE_N], rises[RISE_1], rises[RISE_2])
 
 
 def make_find_direction(spec: Spec) -> Any:
@@ -139,10 +153,7 @@ def make_find_direction(spec: Spec) -> Any:
 
     def direction(contact, velocities, aim):
         # Those of x and z, where the contact's velocity changes by `step` and more by slip.
-        p = cone_point(
-            contact, contact.lambda_n, contact.lambda_1, contact.lambda_2,
-            contact.velocity_n, contact.velocity_1, contact.velocity_2,
-        )  # fmt: skip
+        p = cone_point(contact, impulse_of(contact), velocity_inside(contact))
         x, z = p.x, p.z
         n, one, two = velocity_of(contact, velocities[contact.a], velocities[contact.b])
         change_1, change_2 = 0.0, 0.0
@@ -203,15 +214,9 @@ def make_choose_length(spec: Spec) -> Any:
     cone_point = make_cone_point(spec)
 
     def moved(contact, rises, length):
-        return cone_point(
-            contact,
-            contact.lambda_n + length * contact.step_n,
-            contact.lambda_1 + length * contact.step_1,
-            contact.lambda_2 + length * contact.step_2,
-            contact.velocity_n + length * rises[RISE_N],
-            contact.velocity_1 + length * rises[RISE_1],
-            contact.velocity_2 + length * rises[RISE_2],
-        )
+        impulse = plus_scaled(impulse_of(contact), length, step_of(contact))
+        velocity = plus_scaled(velocity_inside(contact), length, rise_of(rises))
+        return cone_point(contact, impulse, velocity)
 
     moved = kernel(moved, spec)
 
@@ -231,10 +236,7 @@ def make_choose_length(spec: Spec) -> Any:
         for c in range(count):
             contact, rises = contacts[c], workspace.inside[c]
             here = moved(contact, rises, 0.0)
-            step = cone_point(
-                contact, contact.step_n, contact.step_1, contact.step_2,
-                rises[RISE_N], rises[RISE_1], rises[RISE_2],
-            )  # fmt: skip
+            step = cone_point(contact, step_of(contact), rise_of(rises))
             length = min(length, to_boundary(here.x, step.x), to_boundary(here.z, step.z))
         return length
 
@@ -351,7 +353,7 @@ def make_from_inside(spec: Spec) -> Any:
 
 
 def make_begin_again(spec: Spec) -> Any:
-    """Return `kernel(system, workspace, size, most, tolerance, enough) -> steps`.
+    """Return `kernel(system, workspace, size, most, residuals) -> steps`.
 
     As that of `make_alart_curnier`, whose rounds follow: from inside, they find who holds, slides
     and opens. Impulses that are no better than those before are taken back.
@@ -359,7 +361,8 @@ def make_begin_again(spec: Spec) -> Any:
     residual, from_inside = make_residual(spec), make_from_inside(spec)
     alart_curnier, set_impulse = make_alart_curnier(spec), make_set_impulse(spec)
 
-    def begin_again(system, workspace, size, most, tolerance, enough):
+    def begin_again(system, workspace, size, most, residuals):
+        tolerance, enough = residuals
         contacts, count, velocities = system.contacts, system.count, system.velocities
         before, _ = residual(contacts, count, velocities)
         if before <= enough:
@@ -375,7 +378,7 @@ def make_begin_again(spec: Spec) -> Any:
                     system, workspace, size, min(most, float(MOST)), strategy, tolerance
                 )
                 steps += alart_curnier(
-                    system, workspace, size, min(most, FINISHING), tolerance, enough, STIFF_ENOUGH
+                    system, workspace, size, min(most, FINISHING), residuals, STIFF_ENOUGH
                 )
                 after, _ = residual(contacts, count, velocities)
         if not after < before:

@@ -45,7 +45,7 @@ def test_rounds_end_at_coulombs_law(seed: int) -> None:
     """Of problems that are found from far; of others it is asked only what sweeps leave."""
     drawn = drawn_system(SPEC, np.random.default_rng(seed))
     solve = interpreted(alart_curnier.make_alart_curnier(SPEC))
-    steps = solve(drawn.system, drawn.workspace, drawn.size, 400.0, 1e-11, 1e-9, SOFTEST)
+    steps = solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9), SOFTEST)
     assert 0 < steps < 400
     assert_coulombs_law(drawn)
 
@@ -57,7 +57,7 @@ def test_what_is_not_found_is_left_no_worse(seed: int) -> None:
     system, residual = drawn.system, interpreted(make_residual(SPEC))
     before, _ = residual(system.contacts, COUNT, system.velocities)
     solve = interpreted(alart_curnier.make_alart_curnier(SPEC))
-    solve(system, drawn.workspace, drawn.size, 30.0, 1e-11, 1e-9, SOFTEST)
+    solve(system, drawn.workspace, drawn.size, 30.0, (1e-11, 1e-9), SOFTEST)
     after, _ = residual(system.contacts, COUNT, system.velocities)
     assert after <= before
     # Velocities of 10 m/s at most, as each of some twenty rounds is added and taken back.
@@ -68,7 +68,7 @@ def test_what_is_solved_is_left_as_it_is(rng) -> None:
     scene, system, workspace, size, _ = drawn_system(SPEC, rng)
     before = scene.contacts.copy()
     solve = interpreted(alart_curnier.make_alart_curnier(SPEC))
-    assert solve(system, workspace, size, 400.0, 1e-11, 1e3, SOFTEST) == 0
+    assert solve(system, workspace, size, 400.0, (1e-11, 1e3), SOFTEST) == 0
     assert (scene.contacts == before).all()
 
 

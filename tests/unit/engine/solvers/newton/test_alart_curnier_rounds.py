@@ -57,7 +57,7 @@ class Rounds:
         system = ContactSystem(contacts, None, 1, bodies, velocities)
         size, _ = interpreted(step_cost)(system, workspace)
         solve = interpreted(alart_curnier.make_alart_curnier(SPEC))
-        self.steps = solve(system, workspace, size, most, 1e-9 * k, enough * k, SOFTEST)
+        self.steps = solve(system, workspace, size, most, (1e-9 * k, enough * k), SOFTEST)
         self.left = float(row["lambda_n"][0]) - carried
         # Sums of a few dozen impulses below 100 N s, of bodies of 0.3 kg and more.
         expected = free + scene.inverse @ scene.jacobian[0] * float(row["lambda_n"][0])

@@ -40,7 +40,7 @@ def test_rounds_from_there_end_at_coulombs_law(seed: int) -> None:
     """Of draws 0 and 4 too, where rounds from the impulses as drawn may jam."""
     drawn = drawn_system(SPEC, np.random.default_rng(seed))
     begin_again = interpreted(inside_cones.make_begin_again(SPEC))
-    begin_again(drawn.system, drawn.workspace, drawn.size, 400.0, 1e-11, 1e-9)
+    begin_again(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9))
     assert_coulombs_law(drawn)
 
 
@@ -81,9 +81,9 @@ def test_a_step_solves_the_linear_equations(steps: int, share: float) -> None:
 
 
 def test_contacts_without_friction_push_along_their_normals_alone(rng) -> None:
-    mixed = SPEC.including("contact_torque")
+    mixed = SPEC.including("contact_torque", "frictionless_contact")
     drawn = drawn_system(mixed, rng)
-    drawn.scene.contacts["mu"][::2] = 0.0
+    drawn.scene.contacts["frictional"][::2], drawn.scene.contacts["mu"][::2] = 0, 0.0
     before = drawn.scene.contacts.copy()
     for axis in "12":
         drawn.scene.contacts[f"lambda_{axis}"][::2] = 0.0
@@ -93,7 +93,7 @@ def test_contacts_without_friction_push_along_their_normals_alone(rng) -> None:
         for name, value in zip(("vx", "vy", "vz", "wx", "wy", "wz"), change, strict=True):
             row[name] += value
     begin_again = interpreted(inside_cones.make_begin_again(mixed))
-    begin_again(drawn.system, drawn.workspace, drawn.size, 400.0, 1e-11, 1e-9)
+    begin_again(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9))
     assert (impulses(drawn.scene)[::2, 1:] == 0.0).all()
     assert_coulombs_law(drawn)
 
@@ -114,7 +114,7 @@ def test_what_is_no_better_is_taken_back(better: bool, monkeypatch) -> None:
     monkeypatch.setattr(inside_cones, "make_from_inside", lambda spec: scripted)
     monkeypatch.setattr(inside_cones, "make_alart_curnier", lambda spec: lambda *_: 0)
     begin_again = interpreted(inside_cones.make_begin_again(SPEC))
-    steps = begin_again(drawn.system, drawn.workspace, drawn.size, 400.0, 1e-11, 1e-9)
+    steps = begin_again(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9))
     assert steps == (7 if better else 14)  # by each strategy
     expected = np.zeros((COUNT, 3)) if better else before
     # A sum of two impulses below 2 N s, and one of velocities.
@@ -126,7 +126,7 @@ def test_what_is_solved_is_left_alone(rng) -> None:
     drawn = drawn_system(SPEC, rng)
     before = drawn.scene.contacts.copy()
     begin_again = interpreted(inside_cones.make_begin_again(SPEC))
-    assert begin_again(drawn.system, drawn.workspace, drawn.size, 400.0, 1e-11, 1e3) == 0
+    assert begin_again(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e3)) == 0
     assert (drawn.scene.contacts == before).all()
 
 
