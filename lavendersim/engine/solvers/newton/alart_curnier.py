@@ -138,7 +138,7 @@ def make_alart_curnier(spec: Spec) -> Any:
     """Return `kernel(system, workspace, size, most, residuals, softness) -> steps`.
 
     size: of `step_cost`; most: steps; residuals: to be reached, at best and at least, where the
-    latter is not yet [m/s]; softness: of the first round [-]. Impulses, torques and velocities leave
+    latter is not yet [m/s]; softness: of the first round [-]. Impulses, torques, velocities leave
     consistent with each other, at the least residual. None without friction: convex rounds have no
     shifts there.
     """

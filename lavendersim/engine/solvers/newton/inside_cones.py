@@ -68,6 +68,8 @@ JAMMED, CENTRING = 0.1, (0.5, 1.0, 2.0)
 LONGER = 1.5  # of the longest so far, to be taken instead
 # A length below this gets nowhere; so many in all end it.
 NOWHERE, PATIENCE = 1e-3, 12
+# Below this share of the mean product of the start nothing is left but round-off [-].
+NOTHING_LEFT = 1e-20
 # Columns of `Envelope.inside`: what a step adds to the shifted velocity [m/s]
 RISE_N, RISE_1, RISE_2 = range(3)
 BEFORE_N, BEFORE_1, BEFORE_2 = range(3, 6)  # impulses that the method began with [N s]
@@ -313,6 +315,7 @@ def make_from_inside(spec: Spec) -> Any:
         assemble_mass(system.bodies, size, workspace)
         begin_inside(contacts, count, velocities, workspace)
         now, least, steps, stuck, share = inf, inf, 0, 0, 1.0
+        first, _ = mean_and_least(contacts, count, workspace, 0.0)
         while steps < most:
             now, _ = residual(contacts, count, velocities)
             if now < least:
@@ -320,10 +323,12 @@ def make_from_inside(spec: Spec) -> Any:
                 keep(contacts, count)
             if not now < inf or least <= tolerance or stuck > PATIENCE:
                 break
+            mean, _ = mean_and_least(contacts, count, workspace, 0.0)
+            if not mean > NOTHING_LEFT * first:
+                break
             if not factorise_inside(contacts, count, size, workspace, share):
                 break
             steps += 1
-            mean, _ = mean_and_least(contacts, count, workspace, 0.0)
             find_direction(contacts, count, size, velocities, workspace, 0.0)
             _, left = choose_length(contacts, count, workspace, strategy, True)
             centring = min(1.0, max((left / mean) ** strategy.power, LEAST_CENTRING))
