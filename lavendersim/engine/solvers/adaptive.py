@@ -9,7 +9,7 @@ counted in operations, never in time: equal runs take equal decisions.
 A solve that would end above its tolerance calls it once more, LAST sweeps before the end, whatever
 the sweeps promise: what a step leaves of the error, a cold first one above all, later steps only
 spread. What that call leaves above the tolerance goes to `newton.alart_curnier`, after the last
-sweep again, and what that leaves begins once more from inside the cones, `newton.inside_cones`. In
+sweep again, and what that leaves begins once more from inside the cones, `newton.begin_again`. In
 a large heap that is not affordable, and the call takes no step.
 
 Without a tolerance nothing but a sweep that changes nothing ends a solve before its last sweep, and
@@ -30,8 +30,8 @@ from ..row_terms import row_terms
 from ..spec import Spec
 from .iteration import Iteration
 from .newton.alart_curnier import make_alart_curnier
+from .newton.begin_again import make_begin_again, serves
 from .newton.envelope import allocate_envelope
-from .newton.inside_cones import make_begin_again, serves
 from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, step_cost
 from .newton.rounds import SOFTEST
 from .packed.late import FIRST, Packing, make_sweep_late, packs_late

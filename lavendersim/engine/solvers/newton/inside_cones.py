@@ -17,14 +17,12 @@ from math import inf, sqrt
 from typing import Any, NamedTuple
 
 from ...block import make_slip_velocity
-from ...compile import inner, kernel, separate
+from ...compile import inner, kernel
 from ...contact import make_frictionless_velocity
 from ...residual import make_residual
-from ...row_terms import by_friction, row_terms
+from ...row_terms import by_friction
 from ...spec import Spec
-from ...spin_block import resists_turning
 from ...vectors import Vec3, plus_scaled
-from .alart_curnier import make_alart_curnier
 from .cone_scaling import (
     SOFTNESS,
     TINY,
@@ -45,10 +43,8 @@ from .matrix import make_assemble
 from .method import make_keep, make_restore, make_set_impulse
 from .minimise import make_assemble_mass, make_body_of, make_directional_derivative
 from .response import make_fill_rows
-from .rounds import STIFF_ENOUGH
 
 MOST = 80
-FINISHING = 40.0
 
 
 class Centring(NamedTuple):
@@ -72,14 +68,6 @@ NOWHERE, PATIENCE = 1e-3, 12
 NOTHING_LEFT = 1e-20
 # Columns of `Envelope.inside`: what a step adds to the shifted velocity [m/s]
 RISE_N, RISE_1, RISE_2 = range(3)
-BEFORE_N, BEFORE_1, BEFORE_2 = range(3, 6)  # impulses that the method began with [N s]
-
-
-def serves(spec: Spec) -> bool:
-    """Whether contacts of these engines are a cone each: of rows n, t1, t2, rigid, one-sided."""
-    terms = row_terms(spec)
-    others = terms.bilateral or terms.compliant or resists_turning(spec)
-    return terms.frictional and spec.has("newton") and not others
 
 
 def make_contact_velocity(spec: Spec) -> Any:
@@ -151,7 +139,7 @@ def make_find_direction(spec: Spec) -> Any:
     """
     velocity_of, cone_point = make_contact_velocity(spec), make_cone_point(spec)
     fill_rows, body_of = make_fill_rows(spec), make_body_of(spec)
-    directional_derivative = make_directional_derivative(spec)
+    directional_derivative = make_directional_derivative(spec, torques=False)
 
     def direction(contact, velocities, aim):
         # Those of x and z, where the contact's velocity changes by `step` and more by slip.
@@ -268,8 +256,8 @@ def make_factorise_inside(spec: Spec) -> Any:
     share: of the shift's change with slip that the step knows of, 1 or 0.
     """
     gain = make_gain(spec)
-    assemble = make_assemble(spec, gain, scale=make_scale_by_gain(spec))
-    assemble_transposed = make_assemble(spec, gain, scale=make_scale_by_gain_transposed(spec))
+    assemble = make_assemble(spec, gain, False, make_scale_by_gain(spec))
+    assemble_transposed = make_assemble(spec, gain, False, make_scale_by_gain_transposed(spec))
 
     def factorise_inside(contacts, count, size, workspace, share):
         for c in range(count):
@@ -355,42 +343,3 @@ def make_from_inside(spec: Spec) -> Any:
         return steps
 
     return kernel(from_inside, spec)
-
-
-def make_begin_again(spec: Spec) -> Any:
-    """Return `kernel(system, workspace, size, most, residuals) -> steps`.
-
-    As that of `make_alart_curnier`, whose rounds follow: from inside, they find who holds, slides
-    and opens. Impulses that are no better than those before are taken back.
-    """
-    residual, from_inside = make_residual(spec), make_from_inside(spec)
-    alart_curnier, set_impulse = make_alart_curnier(spec), make_set_impulse(spec)
-
-    def begin_again(system, workspace, size, most, residuals):
-        tolerance, enough = residuals
-        contacts, count, velocities = system.contacts, system.count, system.velocities
-        before, _ = residual(contacts, count, velocities)
-        if before <= enough:
-            return 0
-        for c in range(count):
-            contact, kept = contacts[c], workspace.inside[c]
-            kept[BEFORE_N] = contact.lambda_n
-            kept[BEFORE_1], kept[BEFORE_2] = contact.lambda_1, contact.lambda_2
-        steps, after = 0, before
-        for strategy in (LONG_STEPS, SHORT_STEPS):
-            if not after <= enough:
-                steps += from_inside(
-                    system, workspace, size, min(most, float(MOST)), strategy, tolerance
-                )
-                steps += alart_curnier(
-                    system, workspace, size, min(most, FINISHING), residuals, STIFF_ENOUGH
-                )
-                after, _ = residual(contacts, count, velocities)
-        if not after < before:
-            for c in range(count):
-                kept = workspace.inside[c]
-                n, one, two = kept[BEFORE_N], kept[BEFORE_1], kept[BEFORE_2]
-                set_impulse(contacts[c], velocities, n, one, two)
-        return steps
-
-    return separate(kernel(begin_again, spec), spec)
