@@ -30,7 +30,7 @@ from ..row_terms import row_terms
 from ..spec import Spec
 from .iteration import Iteration
 from .newton.alart_curnier import make_alart_curnier
-from .newton.begin_again import make_begin_again, serves
+from .newton.begin_again import make_begin_again
 from .newton.envelope import allocate_envelope
 from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, step_cost
 from .newton.rounds import SOFTEST
@@ -70,7 +70,7 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
         rows = 6 * bodies
         entries = min(rows * (rows + 1) // 2, MOST_ENTRIES)
         upper = entries if row_terms(spec).frictional else 0
-        inside = contacts if serves(spec) else 0
+        inside = contacts if row_terms(spec).frictional else 0
         sweeping = () if packed is None else packed
         return allocate_envelope(bodies, contacts, entries, sweeping, upper, inside)
     return no_workspace(spec, bodies, contacts) if packed is None else Swept(packed)
@@ -138,8 +138,7 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
     chooses = has_hook(spec, "choose_impulses")
     packs, slides = put_back is not None, row_terms(spec).frictional
     alart_curnier: Any = make_alart_curnier(spec)
-    from_inside = serves(spec)
-    begin_again: Any = make_begin_again(spec) if from_inside else None
+    begin_again: Any = make_begin_again(spec)
 
     def proceed(system, workspace, params, counters, carry):
         tolerance = max(params.tolerance, 0.0)
@@ -184,9 +183,8 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                         steps += alart_curnier(
                             system, workspace, unknowns, most, residuals, SOFTEST
                         )
-                        if from_inside:
-                            if over:
-                                steps += begin_again(system, workspace, unknowns, most, residuals)
+                        if over:
+                            steps += begin_again(system, workspace, unknowns, most, residuals)
                 counters.newton_steps += steps
                 if steps > 0:
                     if chooses:

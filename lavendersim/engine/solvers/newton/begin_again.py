@@ -25,11 +25,6 @@ FINISHING = 40.0
 BEFORE_N, BEFORE_1, BEFORE_2 = range(3, 6)
 
 
-def serves(spec: Spec) -> bool:
-    """Whether contacts of these engines may be a cone each: of rows n, t1, t2."""
-    return row_terms(spec).frictional and spec.has("newton")
-
-
 def make_are_cones(spec: Spec) -> Any:
     """Return `kernel(contacts, count) -> whether` all are: rigid, one-sided, of no torque."""
     terms = row_terms(spec)
@@ -59,6 +54,8 @@ def make_begin_again(spec: Spec) -> Any:
     and opens. None where a contact is no
     cone. Impulses that are no better than those before are taken back.
     """
+    if not row_terms(spec).frictional:
+        return None
     residual, from_inside = make_residual(spec), make_from_inside(spec)
     alart_curnier, set_impulse = make_alart_curnier(spec), make_set_impulse(spec)
     are_cones = make_are_cones(spec)

@@ -11,7 +11,6 @@ from drawn_systems import COUNT, assert_coulombs_law, drawn_system, impulses
 from interpreted import interpreted
 
 from lavendersim.engine.solvers.newton import begin_again, inside_cones
-from lavendersim.engine.solvers.newton.begin_again import serves
 from lavendersim.engine.solvers.newton.inside_cones import LONG_STEPS
 from lavendersim.engine.spec import Spec
 
@@ -91,7 +90,6 @@ def test_a_contact_that_is_no_cone_is_left_to_others(
 ) -> None:
     """And what an engine has beside its contacts changes no bit of what it does with cones."""
     spec = SPEC.including(*effects)
-    assert serves(spec)
     drawn = drawn_system(spec, rng)
     drawn.scene.contacts[name] = 0
     are_cones = interpreted(begin_again.make_are_cones(spec))
@@ -122,6 +120,6 @@ def test_engines_that_know_more_than_cones_find_the_same_bits() -> None:
     np.testing.assert_array_equal(*found)
 
 
-def test_it_serves_frictional_contacts_of_newtons_method() -> None:
-    assert not serves(Spec(effects=("contact_torque", "newton"), solver="adaptive"))
-    assert not serves(Spec(effects=("friction", "rotation"), solver="adaptive"))
+def test_without_friction_there_is_none_of_it() -> None:
+    smooth = Spec(effects=("contact_torque", "newton", "rotation"), solver="adaptive")
+    assert begin_again.make_begin_again(smooth) is None
