@@ -31,8 +31,7 @@ from .coulomb_response import (
     make_scale_transposed,
 )
 from .envelope import DOF
-from .lu import factorise_lu, solve_lu
-from .matrix import make_assemble
+from .lu import make_assemble_and_factorise, solve_lu
 from .method import make_accept, make_keep, make_restore, make_set_impulse
 from .minimise import (
     make_assemble_mass,
@@ -70,8 +69,8 @@ def make_find_root(spec: Spec) -> Any:
     what they respond with; enough: change of their velocities by the last step [m/s].
     """
     coulomb_impulse, stiffness = make_coulomb_impulse(spec), make_coulomb_stiffness(spec)
-    assemble = make_assemble(spec, stiffness, scale=make_scale_by_coulomb(spec))
-    assemble_transposed = make_assemble(spec, stiffness, scale=make_scale_transposed(spec))
+    scales = make_scale_by_coulomb(spec), make_scale_transposed(spec)
+    assemble_and_factorise = make_assemble_and_factorise(spec, stiffness, scales)
     begin, gather = make_begin(spec), make_gather(spec, coulomb_impulse)
     directional_derivative = make_directional_derivative(spec)
     take_step, mixed = make_take_step(spec), row_terms(spec).frictionless
@@ -108,15 +107,10 @@ def make_find_root(spec: Spec) -> Any:
     def find_root(contacts, count, size, workspace, enough):
         begin(contacts, count, size, workspace)
         enough = max(enough, ROUND_OFF * fastest(contacts, count))
-        entries = workspace.start[DOF * size - 1] + DOF * size - DOF * workspace.first[size - 1]
         least = inf
         for done in range(STEPS_OF_A_ROUND):
             gather(contacts, count, size, workspace)
-            assemble_transposed(contacts, count, size, workspace)
-            for k in range(entries):
-                workspace.upper[k] = workspace.values[k]
-            assemble(contacts, count, size, workspace)
-            if not factorise_lu(size, workspace):
+            if not assemble_and_factorise(contacts, count, size, workspace):
                 return done + 1, False
             for r in range(DOF * size):
                 workspace.step[r] = -workspace.gradient[r]

@@ -51,8 +51,8 @@ def make_begin_again(spec: Spec) -> Any:
     """Return `kernel(system, workspace, size, most, residuals) -> steps`.
 
     As that of `make_alart_curnier`, whose rounds follow: from inside, they find who holds, slides
-    and opens. None where a contact is no
-    cone. Impulses that are no better than those before are taken back.
+    and opens. None where a contact is no cone. Impulses that are no better than those of before are
+    taken back.
     """
     if not row_terms(spec).frictional:
         return None

@@ -38,8 +38,7 @@ from .cone_scaling import (
     velocity_inside,
 )
 from .envelope import DOF, OF_A, OF_B, T1, T2
-from .lu import factorise_lu, solve_lu
-from .matrix import make_assemble
+from .lu import make_assemble_and_factorise, solve_lu
 from .method import make_keep, make_restore, make_set_impulse
 from .minimise import make_assemble_mass, make_body_of, make_directional_derivative
 from .response import make_fill_rows
@@ -255,19 +254,13 @@ def make_factorise_inside(spec: Spec) -> Any:
 
     share: of the shift's change with slip that the step knows of, 1 or 0.
     """
-    gain = make_gain(spec)
-    assemble = make_assemble(spec, gain, False, make_scale_by_gain(spec))
-    assemble_transposed = make_assemble(spec, gain, False, make_scale_by_gain_transposed(spec))
+    scales = make_scale_by_gain(spec), make_scale_by_gain_transposed(spec)
+    assemble_and_factorise = make_assemble_and_factorise(spec, make_gain(spec), scales, False)
 
     def factorise_inside(contacts, count, size, workspace, share):
         for c in range(count):
             contacts[c].scale = share
-        assemble_transposed(contacts, count, size, workspace)
-        last = DOF * size - 1
-        for k in range(workspace.start[last] + last - DOF * workspace.first[size - 1] + 1):
-            workspace.upper[k] = workspace.values[k]
-        assemble(contacts, count, size, workspace)
-        return factorise_lu(size, workspace)
+        return assemble_and_factorise(contacts, count, size, workspace)
 
     return kernel(factorise_inside, spec)
 
