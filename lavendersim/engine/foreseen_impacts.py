@@ -1,6 +1,7 @@
 """Impacts that the rest of a step may have, foreseen row by row (`effects.impact_order`).
 
 foresee      by the rate of a row's own gap: which rows wait, and when the next is due
+rebounds     whether a pair of the rows gives back of the speed it meets with
 let_rebound  which of those that fly between rebounds do so as pairs
 follow       pairs of which no row lasts: bodies that turn may meet with any of their features
 """
@@ -160,6 +161,24 @@ def make_foresee(spec: Spec) -> Any:
         return False
 
     return kernel(foresee, spec)
+
+
+def make_rebounds(spec: Spec) -> Any:
+    """Return `kernel(state, count) -> whether` a pair of the rows rebounds; None if none ever does.
+
+    Asked of rows, not of the engine: where nothing rebounds, bits are those without restitution.
+    """
+    if not step_terms(spec).rebounds:
+        return None
+
+    def rebounds(state, count):
+        contacts, pairs = state.contacts, state.pairs
+        found = False
+        for c in range(count):
+            found = found or pairs[contacts[c].pair].restitution > 0.0
+        return found
+
+    return kernel(rebounds, spec)
 
 
 def make_let_rebound(spec: Spec) -> Any:

@@ -24,6 +24,7 @@ from typing import Any
 from .anderson import NO_ROUND, make_bring_on
 from .compile import kernel
 from .effects import made_once
+from .foreseen_impacts import make_rebounds
 from .integrate import make_classify, make_finish
 from .midpoint_passes import make_stand_up
 from .parts import make_forget_history
@@ -68,7 +69,8 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     forget_history = make_forget_history(spec)
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     warms, store_contacts = made_once(spec, "store")
-    rebounds = step_terms(spec).rebounds and step_terms(spec).ordered_impacts
+    rebounds: Any = make_rebounds(spec) if step_terms(spec).ordered_impacts else None
+    may_rebound = rebounds is not None
     note_working = make_note_working(spec)
 
     def read(links, x):
@@ -285,8 +287,8 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
         pull(links, contacts, bodies, count)
         beside.passes[0] = 0
         size, rebounding = 1.0, False
-        if rebounds:
-            rebounding = counters.unordered == 1
+        if may_rebound:
+            rebounding = counters.unordered == 1 and rebounds(state, count)
         for number in range(-SIZES if rebounding else 0, SIZES):
             if number == 0:
                 size, beside.impacts[0] = 1.0, 0

@@ -27,7 +27,7 @@ from idle_scenes import CASES, SCENES, UNLOGGED
 from laboratory import planned
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.effects import EFFECTS
+from lavendersim.engine.effects import EFFECTS, impact_order
 from lavendersim.engine.spec import Spec
 from tests.thorough import THOROUGH
 
@@ -128,6 +128,18 @@ def test_an_idle_effect_changes_no_bit(name: str, scene: str) -> None:
     assert differences(one, other, *MORE_SWEEPS.get(name, ())) == []
     if scene in CASES[name] and scene not in NOTHING_TOUCHES and name not in UNLOGGED:
         assert len(one.tables["contact"]) > MANY
+
+
+def test_idle_restitution_changes_no_bit_where_impacts_spend_their_budget(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What rebounds has more of it (`impact_order`): what is compiled in does not decide."""
+    monkeypatch.setattr(impact_order, "WORK", 2)
+    cell, lean, full = with_effect("restitution", "plastic balls, default")
+    run = {"steps": SOME_STEPS, "interpreted": True}
+    one, other = Run(cell, lean, **run), Run(cell, full, **run)
+    assert 0 < one.tables["step"]["unordered"].sum() < SOME_STEPS
+    assert differences(one, other) == []
 
 
 @pytest.mark.parametrize("scene", TOGETHER)

@@ -158,6 +158,7 @@ SCENES: dict[str, Callable[[], dict[str, Any]]] = {
     "conjugate boxes, chapter": lambda: cell(boxes(), preset="chapter", **CONJUGATE),
     "single ball, default": lambda: cell(single(), preset="default"),
     "drifting balls, default": lambda: cell(drifting(), NOWHERE, preset="default"),
+    "plastic balls, default": lambda: cell(balls(), preset="default"),
     "balls, default": lambda: cell(balls(restitution=0.5), preset="default"),
     "boxes, default": lambda: cell(boxes(), preset="default"),
     "mixed, default": lambda: cell(mixed(friction=0.4, restitution=0.3), preset="default"),

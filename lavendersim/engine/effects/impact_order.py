@@ -14,9 +14,9 @@ gap, where the path of the contact bends). They are contacts of the motion (`imp
 impact takes along what touches and does not part, and of its two bodies what is flush with it by
 ten slops, as points of a face that lands without rebound (`impact_rows`); nothing else. One may
 have MOST_ROWS rows of contacts, and a step has WORK of them to spend on its parts, or REBOUND where
-something rebounds: there impacts without order may win energy. The rest of one that has spent them
-or meets a larger impact, or whose bodies overlap, is made in one part: its impacts at their times
-but without their order (/step: unordered).
+something near rebounds: there impacts without order may win energy. The rest of one that has spent
+them or meets a larger impact, or whose bodies overlap, is made in one part: its impacts at their
+times but without their order (/step: unordered).
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def make_order(spec: Spec) -> Any:
         make_expect,
     )
     from ..flush_contacts import make_drop_flush
-    from ..foreseen_impacts import make_follow, make_foresee, make_let_rebound
+    from ..foreseen_impacts import make_follow, make_foresee, make_let_rebound, make_rebounds
     from ..impact_location import make_locate
     from ..impact_rows import make_keep_motion, make_keep_present, make_mark_impact
     from ..row_terms import row_terms
@@ -116,7 +116,7 @@ def make_order(spec: Spec) -> Any:
     springs, ropes = row_terms(spec).elastic, row_terms(spec).taut
     bilateral, stopped = row_terms(spec).bilateral, row_terms(spec).stopped
     rebounds = step_terms(spec).rebounds
-    work = REBOUND if rebounds else WORK
+    any_rebounds: Any = make_rebounds(spec)
     stops, first_stop = made_once(spec, "first_stop")
 
     def first_due(contacts, count):
@@ -209,7 +209,10 @@ def make_order(spec: Spec) -> Any:
         if meets:
             rows = mark_impact(state, count, params)
         counters.spent += 1 + rows + count // CANDIDATES_A_ROW
-        if counters.spent > work or (meets and rows > MOST_ROWS):
+        spent = counters.spent > WORK
+        if rebounds and spent and counters.spent <= REBOUND:
+            spent = not any_rebounds(state, count)
+        if spent or (meets and rows > MOST_ROWS):
             counters.unordered = 1
             return count, left
         if meets:
