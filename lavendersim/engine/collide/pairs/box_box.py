@@ -49,6 +49,9 @@ FACE_SIZE = 1e-6
 # Boxes farther apart than this share of the smallest half edge have their true distance looked for;
 # nearer, a face that separates most and meets the other box is as near as it is for stacking [-].
 FAR = 0.1
+# What lies over that face may be farther than it separates the boxes by this share: an edge that
+# turns to it and hangs over its end by little meets it along its whole length, not at one end [-].
+NEARLY = 0.01
 # Names: faces of A, faces of B, nine pairs of edges of sixteen choices each, witness points.
 EDGE_FEATURES = 2 * BOX_NAMES
 EDGE_CHOICES = 16
@@ -176,6 +179,15 @@ def nearest_contact(a, found, manifold):
 
 
 @inner
+def meets(manifold, count, s_face):
+    """Return whether a candidate is nearly as near as the face separates the boxes."""
+    near = False
+    for k in range(count):
+        near = near or manifold.points[k].phi <= (1.0 + NEARLY) * s_face
+    return near
+
+
+@inner
 def smallest_half_edge(box):
     """Return the smallest half edge of a box [m]."""
     return min(box.half[0], min(box.half[1], box.half[2]))
@@ -224,19 +236,20 @@ def make(spec):
         if s_e > margin:
             return 0
         size = min(smallest_half_edge(box_a), smallest_half_edge(box_b))
-        s_face = max(s_a, s_b)
+        s_face, looks_past = max(s_a, s_b), False
         if speculative:
             if s_face > FAR * size or s_e > max(TOUCHING, s_face / EDGE_SHARE + EDGE_SIZE * size):
                 status, _ = gjk(a, b, d, margin, scratch)
                 if status != APART:
                     return 0
-                if s_face < found.distance - FACE_SHARE * (a.bound + b.bound):
-                    return nearest_contact(a, found, manifold)
+                looks_past = s_face < found.distance - FACE_SHARE * (a.bound + b.bound)
         touching_edges = edges >= 0 and s_e <= TOUCHING
         if touching_edges and s_e > EDGE_SHARE * s_face + EDGE_SIZE * size:
             return edge_contact(box_a, box_b, edges, s_e, manifold)
         count = clip_faces(s_b > s_a + FACE_SIZE * size, axis_a, axis_b, margin, scratch)
         if speculative:
+            if looks_past and not meets(manifold, count, s_face):
+                return nearest_contact(a, found, manifold)
             if count == 0 and s_face > 0.0:
                 # The face that separates most looks past the other box.
                 status, _ = gjk(a, b, d, margin, scratch)

@@ -59,3 +59,27 @@ def test_boxes_that_pass_each_other_at_an_edge_are_as_far_apart_as_their_edges(
     assert found.phi[0] == pytest.approx(distance, rel=1e-6, abs=1e-14)
     # Along each axis the corner is known to 1e-16 m.
     np.testing.assert_allclose(found.normal, apart / distance, atol=1e-15 / distance + 1e-6)
+
+
+@pytest.mark.parametrize("gap", [6e-3, 2e-3, 6e-4])
+@pytest.mark.parametrize("over", [-1e-5, 1e-9, 2e-6, 1e-4])
+def test_an_edge_that_turns_to_a_face_and_hangs_over_its_end_meets_it_along_its_whole_length(
+    gap: float, over: float
+) -> None:
+    """A domino that leans at the next one, a little yawed and a little beside it [m]."""
+    half, lean, yaw = np.array((0.005, 0.025, 0.05)), 0.3, 2e-5
+    leant = convex.matrix_of(np.array((np.cos(0.5 * lean), 0.0, np.sin(0.5 * lean), 0.0)))
+    matrix = convex.matrix_of(np.array((np.cos(0.5 * yaw), 0.0, 0.0, np.sin(0.5 * yaw)))) @ leant
+    end = matrix @ (half * (1.0, -1.0, 1.0))  # of the edge, the one that turns to the face
+    corner = np.array((-half[0] - gap, -half[1] - over, 0.03))
+    a, b = body("box", half, corner - end, matrix), body("box", half)
+    found = manifold("box_box", a, b, 0.01, effects=("rotation", "speculative"))
+    np.testing.assert_allclose(found.normal, (1.0, 0.0, 0.0), atol=1e-15)
+    # Over the edge's length of 2 half[1] the yaw brings one end nearer by 1e-6 m; of boxes as wide
+    # as each other one end or the other hangs over.
+    turned = 2.0 * half[1] * yaw
+    (edge,) = np.nonzero(found.phi < gap + 2.0 * turned)  # the face below the edge is farther
+    across = found.points[edge, 1]
+    far, near = found.phi[edge[across.argmax()]], found.phi[edge[across.argmin()]]
+    assert (far, near) == pytest.approx((gap + turned, gap), abs=yaw * abs(over) + 2e-12)
+    assert np.ptp(across) == pytest.approx(2.0 * half[1] - abs(over), abs=1e-9)
