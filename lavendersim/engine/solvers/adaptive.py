@@ -184,7 +184,9 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                             system, workspace, unknowns, most, residuals, SOFTEST
                         )
                         if over:
-                            steps += begin_again(system, workspace, unknowns, most, residuals)
+                            steps += begin_again(
+                                system, workspace, unknowns, most, residuals, params
+                            )
                 counters.newton_steps += steps
                 if steps > 0:
                     if chooses:

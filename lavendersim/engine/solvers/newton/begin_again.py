@@ -1,5 +1,8 @@
 """What rounds of Newton's method leave begins again from inside the cones, and rounds follow.
 
+Then sweeps take turns with rounds, each from where the other ended: many sweeps change who holds,
+slides and opens where a round would not leave its own. That is for a few steps in thousands.
+
 Where every contact is a cone, whatever else an engine knows: a scene's bits are those of an engine
 without. What is left is no worse than before.
 """
@@ -13,6 +16,7 @@ from ...residual import make_residual
 from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
+from ..sweep import make_sweep
 from .alart_curnier import make_alart_curnier
 from .inside_cones import LONG_STEPS, MOST, SHORT_STEPS, make_from_inside
 from .method import make_set_impulse
@@ -21,8 +25,10 @@ from .torques import make_limits_torque
 
 # Steps of the rounds that follow: from near their end they take a few.
 FINISHING = 40.0
-# Columns of `Envelope.inside` behind those of `inside_cones`: impulses of before [N s]
-BEFORE_N, BEFORE_1, BEFORE_2 = range(3, 6)
+# Sweeps of the first turn where that leaves something, twice as many of each next one.
+SWEEPS, TURNS = 1000, 4
+# Columns of `Envelope.inside` behind those of `inside_cones`: the best impulses [N s]
+BEST_N, BEST_1, BEST_2 = range(3, 6)
 
 
 def make_are_cones(spec: Spec) -> Any:
@@ -48,43 +54,63 @@ def make_are_cones(spec: Spec) -> Any:
 
 
 def make_begin_again(spec: Spec) -> Any:
-    """Return `kernel(system, workspace, size, most, residuals) -> steps`.
+    """Return `kernel(system, workspace, size, most, residuals, params) -> steps`.
 
     As that of `make_alart_curnier`, whose rounds follow: from inside, they find who holds, slides
-    and opens. None where a contact is no cone. Impulses that are no better than those of before are
-    taken back.
+    and opens. None where a contact is no cone. The best impulses of all are left, those of before
+    among them.
     """
     if not row_terms(spec).frictional:
         return None
     residual, from_inside = make_residual(spec), make_from_inside(spec)
     alart_curnier, set_impulse = make_alart_curnier(spec), make_set_impulse(spec)
-    are_cones = make_are_cones(spec)
+    are_cones, sweep = make_are_cones(spec), make_sweep(spec)
 
-    def begin_again(system, workspace, size, most, residuals):
-        tolerance, enough = residuals
-        contacts, count, velocities = system.contacts, system.count, system.velocities
-        before, _ = residual(contacts, count, velocities)
-        if before <= enough or not are_cones(contacts, count):
-            return 0
+    def keep(contacts, count, workspace):
         for c in range(count):
             contact, kept = contacts[c], workspace.inside[c]
-            kept[BEFORE_N] = contact.lambda_n
-            kept[BEFORE_1], kept[BEFORE_2] = contact.lambda_1, contact.lambda_2
-        steps, after = 0, before
+            kept[BEST_N] = contact.lambda_n
+            kept[BEST_1], kept[BEST_2] = contact.lambda_1, contact.lambda_2
+
+    keep = kernel(keep, spec)
+
+    def end_with_rounds(system, workspace, size, most, residuals, least):
+        contacts, count, velocities = system.contacts, system.count, system.velocities
+        most = min(most, FINISHING)
+        steps = alart_curnier(system, workspace, size, most, residuals, STIFF_ENOUGH)
+        after, _ = residual(contacts, count, velocities)
+        if after < least:
+            keep(contacts, count, workspace)
+            least = after
+        return steps, least
+
+    end_with_rounds = kernel(end_with_rounds, spec)
+
+    def begin_again(system, workspace, size, most, residuals, params):
+        tolerance, enough = residuals
+        contacts, count, velocities = system.contacts, system.count, system.velocities
+        least, _ = residual(contacts, count, velocities)
+        if least <= enough or not are_cones(contacts, count):
+            return 0
+        keep(contacts, count, workspace)
+        made, steps = 0, 0
         for strategy in (LONG_STEPS, SHORT_STEPS):
-            if not after <= enough:
-                steps += from_inside(
+            if not least <= enough:
+                made += from_inside(
                     system, workspace, size, min(most, float(MOST)), strategy, tolerance
                 )
-                steps += alart_curnier(
-                    system, workspace, size, min(most, FINISHING), residuals, STIFF_ENOUGH
-                )
-                after, _ = residual(contacts, count, velocities)
-        if not after < before:
-            for c in range(count):
-                kept = workspace.inside[c]
-                n, one, two = kept[BEFORE_N], kept[BEFORE_1], kept[BEFORE_2]
-                set_impulse(contacts[c], velocities, n, one, two)
-        return steps
+                steps, least = end_with_rounds(system, workspace, size, most, residuals, least)
+                made += steps
+        for turn in range(TURNS):
+            if not least <= enough:
+                for _ in range(SWEEPS << turn):
+                    sweep(system, params)
+                steps, least = end_with_rounds(system, workspace, size, most, residuals, least)
+                made += steps
+        for c in range(count):
+            best = workspace.inside[c]
+            n, one, two = best[BEST_N], best[BEST_1], best[BEST_2]
+            set_impulse(contacts[c], velocities, n, one, two)
+        return made
 
     return separate(kernel(begin_again, spec), spec)

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from drawn_contacts import stacked
 from drawn_systems import COUNT, assert_coulombs_law, drawn_system, impulses
-from interpreted import interpreted
+from interpreted import interpreted, records
 
+from lavendersim.engine.records import PARAMETERS, dtype
 from lavendersim.engine.solvers.newton import begin_again, inside_cones
+from lavendersim.engine.solvers.newton.begin_again import TURNS
 from lavendersim.engine.solvers.newton.inside_cones import LONG_STEPS
 from lavendersim.engine.spec import Spec
 
@@ -22,6 +24,7 @@ OTHERS = {
     ("torsional_friction",): "torsional",
     ("contact_torque", "frictionless_contact", "joint"): "bilateral",
 }
+PARAMS = records(np.zeros(1, dtype(PARAMETERS)))[0]
 ALL = [effect for effects in OTHERS for effect in effects]
 
 
@@ -30,7 +33,7 @@ def test_rounds_from_there_end_at_coulombs_law(seed: int) -> None:
     """Of draws 0 and 4 too, where rounds from the impulses as drawn may jam."""
     drawn = drawn_system(SPEC, np.random.default_rng(seed))
     solve = interpreted(begin_again.make_begin_again(SPEC))
-    solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9))
+    solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9), PARAMS)
     assert_coulombs_law(drawn)
 
 
@@ -47,7 +50,7 @@ def test_contacts_without_friction_push_along_their_normals_alone(rng) -> None:
         for name, value in zip(("vx", "vy", "vz", "wx", "wy", "wz"), change, strict=True):
             row[name] += value
     solve = interpreted(begin_again.make_begin_again(mixed))
-    solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9))
+    solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9), PARAMS)
     assert (impulses(drawn.scene)[::2, 1:] == 0.0).all()
     assert_coulombs_law(drawn)
 
@@ -67,20 +70,35 @@ def test_what_is_no_better_is_taken_back(better: bool, monkeypatch) -> None:
 
     monkeypatch.setattr(begin_again, "make_from_inside", lambda spec: scripted)
     monkeypatch.setattr(begin_again, "make_alart_curnier", lambda spec: lambda *_: 0)
+    sweeps: list[int] = []
+    monkeypatch.setattr(begin_again, "make_sweep", lambda spec: lambda *_: sweeps.append(1))
+    monkeypatch.setattr(begin_again, "SWEEPS", 3)
     solve = interpreted(begin_again.make_begin_again(SPEC))
-    steps = solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9))
+    steps = solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9), PARAMS)
     assert steps == (7 if better else 14)  # by each strategy
+    assert len(sweeps) == (0 if better else 3 * (2**TURNS - 1))
     expected = np.zeros((COUNT, 3)) if better else before
     # A sum of two impulses below 2 N s, and one of velocities.
     np.testing.assert_allclose(impulses(drawn.scene), expected, atol=1e-15)
     np.testing.assert_allclose(stacked(drawn.scene.velocities), drawn.motion, atol=1e-12)
 
 
+def test_sweeps_go_on_where_nothing_from_inside_ends(monkeypatch) -> None:
+    """By themselves to Coulomb's law, in as many as they take here; rounds would need a few."""
+    drawn = drawn_system(SPEC, np.random.default_rng(5))
+    monkeypatch.setattr(begin_again, "make_from_inside", lambda spec: lambda *_: 0)
+    monkeypatch.setattr(begin_again, "make_alart_curnier", lambda spec: lambda *_: 0)
+    system = drawn.system._replace(order=np.arange(COUNT))
+    solve = interpreted(begin_again.make_begin_again(SPEC))
+    assert solve(system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9), PARAMS) == 0
+    assert_coulombs_law(drawn)
+
+
 def test_what_is_solved_is_left_alone(rng) -> None:
     drawn = drawn_system(SPEC, rng)
     before = drawn.scene.contacts.copy()
     solve = interpreted(begin_again.make_begin_again(SPEC))
-    assert solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e3)) == 0
+    assert solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e3), PARAMS) == 0
     assert (drawn.scene.contacts == before).all()
 
 
@@ -98,7 +116,7 @@ def test_a_contact_that_is_no_cone_is_left_to_others(
     assert not are_cones(drawn.system.contacts, COUNT)
     before = drawn.scene.contacts.copy()
     solve = interpreted(begin_again.make_begin_again(spec))
-    assert solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9)) == 0
+    assert solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9), PARAMS) == 0
     assert (drawn.scene.contacts == before).all()
 
 
