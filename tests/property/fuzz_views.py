@@ -238,6 +238,9 @@ def nudged(cell: CellConfig, size: float, seed: int) -> CellConfig:
             if name in body and body[name] is not None:
                 body[name] = [x + size * draw.uniform(-1.0, 1.0) * max(abs(x), least)
                               for x in body[name]]  # fmt: skip
+        if body.get("orientation") is not None:  # of a resolved cell it is a unit quaternion
+            q = np.array(body["orientation"])
+            body["orientation"] = (q / np.linalg.norm(q)).tolist()
     for body in tree["scene"]["bodies"].values():
         if body["shape"]["kind"] == "plane":
             body["shape"]["offset"] += size * draw.uniform(-1.0, 1.0) * far
