@@ -102,7 +102,8 @@ def make_lasting(spec: Spec) -> Any:
 
     Whether it lasts, by how fast its surfaces approach before forces act. velocities: after them.
     """
-    friction, springs = row_terms(spec).frictional, row_terms(spec).elastic
+    friction = row_terms(spec).frictional
+    springs, spring_row = made_once(spec, "spring_row")
     ropes, bilateral = row_terms(spec).taut, row_terms(spec).bilateral
     turns, normal_velocity = step_terms(spec).turns, make_normal_velocity(spec)
 
@@ -118,6 +119,9 @@ def make_lasting(spec: Spec) -> Any:
             if twisted(velocities[a], motion[a]) or twisted(velocities[b], motion[b]):
                 # dv_n is without what torques change.
                 contact.begin_n = normal_velocity(contact, motion[a], motion[b])
+                if springs:
+                    if contact.spring_compliance > 0.0:
+                        spring_row(contact, contact.begin_n, params)
         contact.middle_n = contact.begin_n
         forced = abs(contact.dv_n) * params.timestep / params.dt
         closed = contact.phi <= params.slop

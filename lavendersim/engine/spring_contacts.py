@@ -48,6 +48,8 @@ FOUND = 0.01
 ROUND_OFF = 1e-13
 # Sizes of the springs' impulses, each a quarter of the last, and of what bodies move by, a half.
 SIZES, SHARES = 8, 12
+# Solves of one size: another where contacts no longer join what was placed with a union.
+SOLVES = 3
 # How often what does not move is made slower, by a half, where contacts give way.
 SLOWER = 30
 
@@ -63,7 +65,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     turns = step_terms(spec).turns
     find = make_find(spec, place).find
     settle = make_limit(spec, place).settle
-    join, gains, pull, put = make_unions(spec, place)
+    join, gains, pull, put, part = make_unions(spec, place)
     classify, bring_on = make_classify(spec), make_bring_on(spec)
     finish, stand_up = make_finish(spec), make_stand_up(spec)
     forget_history = make_forget_history(spec)
@@ -184,6 +186,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
             body, v, m = bodies[i], velocities[i], motion[i]
             if body.inv_m == 0.0:
                 continue
+            body.placed = body.again
             if body.again == 1:
                 body.to_vx = m.vx + body.pulled_x + body.sprung_x
                 body.to_vy = m.vy + body.pulled_y + body.sprung_y
@@ -283,6 +286,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
         counters.spring_not_converged += 1
         if midway:
             stand_up(bodies, poses)
+        part(links, bodies, motion)
         take_settled(links, bodies, velocities, motion, x, dt)
         pull(links, contacts, bodies, count)
         beside.passes[0] = 0
@@ -296,17 +300,20 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
                 size = 0.0
             for i in range(x.shape[0]):
                 f[i] = size * x[i]
-            if carries_inertia:
-                refresh_inertia(bodies, velocities)
-            impose(links, bodies, velocities, motion, f, size)
-            finish(bodies, velocities, motion, params)
-            forget_history(counters, log.residual)
-            sweeps = counters.sweeps
-            counters.midpoint_not_converged = before[0]
-            counters.gyroscopic_not_converged = before[1]
-            solve(state, count, workspace, params, counters, log)
-            counters.sweeps += sweeps
-            join(links, bodies, contacts, count, False)
+            for _ in range(SOLVES if size < 1.0 else 1):
+                if carries_inertia:
+                    refresh_inertia(bodies, velocities)
+                impose(links, bodies, velocities, motion, f, size)
+                finish(bodies, velocities, motion, params)
+                forget_history(counters, log.residual)
+                sweeps = counters.sweeps
+                counters.midpoint_not_converged = before[0]
+                counters.gyroscopic_not_converged = before[1]
+                solve(state, count, workspace, params, counters, log)
+                counters.sweeps += sweeps
+                join(links, bodies, contacts, count, False)
+                if not part(links, bodies, motion):
+                    break
             note_working(state, bodies, count)
             pull(links, contacts, bodies, count)  # of what has joined
             classify(contacts, count, motion, params)

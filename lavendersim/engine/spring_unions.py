@@ -34,6 +34,7 @@ class Unions(NamedTuple):
     gains: Any  # (state, rows, count, beside, dt) -> whether they win energy
     pull: Any  # (links, contacts, bodies, count): notes what forces change of their centres
     put: Any  # (state, rows, count, t, dt): where they are moved to
+    part: Any  # (links, rows, motion) -> whether bodies are in none any more
 
 
 def make_unions(spec: Spec, place: Any) -> Unions:
@@ -189,6 +190,27 @@ def make_unions(spec: Spec, place: Any) -> Unions:
 
     is_anchored = kernel(is_anchored, spec)
 
+    def part(links, rows, motion):
+        # What contacts no longer join to a spring is placed with no union: it has all that forces
+        # give it. Contacts come and go while impulses are looked for.
+        parted = False
+        for i in range(rows.shape[0]):
+            row, m = rows[i], motion[i]
+            sprung = False
+            for k in range(links.shape[0]):
+                if links[k].again == 1:
+                    a, b = rows[links[k].a], rows[links[k].b]
+                    sprung = sprung or max(a.group, b.group) == row.group
+            if row.placed == 1 and not sprung:
+                row.placed, row.again, row.sprung, parted = 0, 0, 0, True
+                row.to_vx, row.to_vy = m.vx + row.pulled_x, m.vy + row.pulled_y
+                row.to_vz = m.vz + row.pulled_z
+                if turns:
+                    row.to_wx, row.to_wy, row.to_wz = row.spun_x, row.spun_y, row.spun_z
+        return parted
+
+    part = kernel(part, spec)
+
     def pull(links, contacts, rows, count):
         # What forces change of the velocity of a union's centre; 0 where something holds it.
         for i in range(rows.shape[0]):
@@ -245,4 +267,4 @@ def make_unions(spec: Spec, place: Any) -> Unions:
                         if turns:
                             v.wx, v.wy, v.wz = SLOWED * v.wx, SLOWED * v.wy, SLOWED * v.wz
 
-    return Unions(join, gains, pull, kernel(put, spec))
+    return Unions(join, gains, pull, kernel(put, spec), part)

@@ -4,7 +4,8 @@ momentum     m (v_1 - v_0) = (m g + F) dt + sum of impulses, of each body that n
              and no varying force pulls: friction, restitution, cohesion and every solver included;
              where a step says that springs were not found, of none that contacts join to one
 penetration  grows in a step by no more than two bodies can move in it, as depth is 1-Lipschitz in
-             where bodies stand: |d(x) - d(y)| <= |x - y|
+             where bodies stand: |d(x) - d(y)| <= |x - y|; not of stops of joints, whose arm is as
+             long as their axis is far, and which a turn by more than half a circle passes by
 gap          what pushes touches, or comes to touch by what the two bodies move in the step, or
              would without contacts (Signorini); but for a push as small as the row's residual
 energy       does not grow but by what a step's residual and its first order in time leave, where
@@ -31,7 +32,8 @@ from lavendersim.scene.build import Scene
 # Impulses add up from thousands of updates, each rounded by 1e-16 of what it is; on their way they
 # may be a thousand times what they end with.
 ROUND_OFF = 1e-9
-# So may a row that ends with none be as large as any other of its step, in some updates.
+# So may a row that ends with none be as large as any other of its step, in some updates; or as
+# those of the step before, with which a warm start begins.
 TAKEN_BACK = 64.0 * np.finfo(float).eps
 # Of separations: faces and rims are found to some 1e-6 of the sizes (`separation.ascend`).
 NEAR = 1e-5
@@ -225,6 +227,8 @@ def _momentum(config: CellConfig, rows: Rows, steps: Steps) -> list[str]:
     miss = np.linalg.norm(change - weight - gained, axis=2)
     largest = np.zeros(len(before.dt))
     np.maximum.at(largest, steps.at, np.abs(push).sum(axis=1))
+    if config.numerics.warm_start:
+        largest[1:] = np.maximum(largest[1:], largest[:-1])
     wrong = free & ~(miss <= ROUND_OFF * size + TAKEN_BACK * largest[:, None])
     if not wrong.any():
         return []
@@ -317,7 +321,8 @@ def _gap(config: CellConfig, steps: Steps) -> list[str]:
 
     A row looks ahead from the velocities that forces leave, before contacts: what a stiff spring
     pulls may be held where it is. min(k lambda_n, w_n) is at most a row's residual r: what has a
-    larger push comes as near as it should, but for r dt.
+    larger push comes as near as it should, but for r dt. Under the convex cone what slides opens
+    with w_n = mu |w_t| (`solvers.row_update`): it is pushed so far from where it slides.
     """
     rows = steps.contact
     pushes = rows["impulse_n"] * rows["inverse_effective_mass"] > (1.0 + NEAR) * rows["residual"]
@@ -330,12 +335,25 @@ def _gap(config: CellConfig, steps: Steps) -> list[str]:
     reach = steps.reach + _driven(config, steps)
     allowed = reach[steps.at, rows["body_a"]] + reach[steps.at, rows["body_b"]] + near[steps.at]
     allowed += rows["residual"] * steps.before.dt[steps.at]
+    if config.numerics.friction_cone == "convex" and "slip_t1" in (rows.dtype.names or ()):
+        allowed += _opening(rows) * steps.before.dt[steps.at]
     wrong = pushes & (rows["separation"] > allowed)
     if not wrong.any():
         return []
     k = int(np.argmax(wrong))
     said = f"{rows['separation'][k]:.3g} m in step {rows['step'][k]}, of at most {allowed[k]:.3g} m"
     return [f"gap: a push across {said}"]
+
+
+def _opening(rows: np.ndarray) -> np.ndarray:
+    """Return mu |w_t| of each contact, of one with a grain |F w_t| [m/s]."""
+    one, two = rows["slip_t1"], rows["slip_t2"]
+    opening: np.ndarray = rows["friction"] * np.hypot(one, two)
+    if "friction_11" in (rows.dtype.names or ()):
+        along = rows["friction_11"] * one + rows["friction_12"] * two
+        across = rows["friction_12"] * one + rows["friction_22"] * two
+        opening = np.maximum(opening, np.hypot(along, across))
+    return opening
 
 
 def is_anew(config: CellConfig, steps: Steps) -> bool:
@@ -348,6 +366,12 @@ def is_anew(config: CellConfig, steps: Steps) -> bool:
 def _penetration(rows: Rows, steps: Steps) -> list[str]:
     count, reach = len(steps.before.dt), _pair_reach(steps)
     deepest = rows.step["max_penetration"][1 : count + 1]
+    if "joint" in (steps.contact.dtype.names or ()):
+        stops, others = np.zeros(count), np.zeros(count)
+        joint = steps.contact["joint"] > 0
+        for depth, own in ((stops, joint), (others, ~joint)):
+            np.maximum.at(depth, steps.at[own], steps.contact["penetration"][own])
+        deepest = np.where(deepest > stops, deepest, others)
     allowed = np.full(count, np.inf)  # of what overlaps as it begins nothing is said
     allowed[1:] = np.maximum(deepest[:-1], 0.0) + reach[1:] + reach[:-1]
     allowed += NEAR * steps.before.bound.max(axis=1)

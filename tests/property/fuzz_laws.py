@@ -75,14 +75,17 @@ def run(config: CellConfig, spec: Spec, steps: int, by_step: bool = False) -> En
     engine = scene.engine(spec, BLOCK)
     events = EventQueue(engine, scene, config.events, config.triggered)
     blocks, status, done, states = [], RUNNING, 0, []
+    before: Tables | None = None
     engine.advance(0)  # as a run does: triggers may be met by the initial state
     while True:
         events.apply_due(done)
-        before = tables_of(engine, scene) if by_step else None
+        if by_step and before is None:  # what fills the log in the middle of a step goes on in it
+            before = tables_of(engine, scene)
         if done < steps:
             status = engine.advance(1 if by_step else events.next_stop(steps) - done)
         if before is not None and int(engine.counters["step"][0]) > done:
             states.append((before, tables_of(engine, scene)))
+            before = None
         done = int(engine.counters["step"][0])
         blocks.append(engine.take_rows())
         if status == DIVERGED or (status == RUNNING and done >= steps):

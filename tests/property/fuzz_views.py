@@ -227,17 +227,36 @@ class View(NamedTuple):
         return value * self.length**length * self.time**time
 
 
-def nudged(cell: CellConfig, size: float, seed: int) -> CellConfig:
-    """Return a cell whose bodies stand, turn and fly by a share of `size` otherwise."""
+def _reach(shape: Tree) -> float:
+    """Return how far a shape reaches from its centre, or somewhat less [m]."""
+    if shape["kind"] == "compound":
+        return max(_reach(part["shape"]) for part in shape["parts"])
+    if shape["kind"] == "hull":
+        return float(np.linalg.norm(shape["points"], axis=1).max())
+    if shape["kind"] == "box":
+        return 0.5 * float(np.linalg.norm(shape["size"]))
+    return float(shape["radius"] + 0.5 * shape.get("length", 0.0))
+
+
+def nudged(cell: CellConfig, size: float, seed: int, arms: bool = False) -> CellConfig:
+    """Return a cell whose bodies stand, turn and fly by a share of `size` otherwise.
+
+    arms: they turn by as much as moves their ends by that share of where they stand. A contact acts
+    at a place of the world, whose last digit is many of a small body's arm.
+    """
     draw, tree = random.Random(seed), cell.as_dict()
     bodies = [b for b in tree["scene"]["bodies"].values() if b["shape"]["kind"] != "plane"]
     far = max(float(np.abs(body["position"]).max()) for body in bodies)
     for body in bodies:
-        for name, least in (("position", far), ("orientation", 1.0), ("velocity", 0.0),
+        turn = max(far / _reach(body["shape"]), 1.0) if arms else 1.0
+        for name, least in (("position", far), ("orientation", turn), ("velocity", 0.0),
                             ("angular_velocity", 0.0)):  # fmt: skip
             if name in body and body[name] is not None:
                 body[name] = [x + size * draw.uniform(-1.0, 1.0) * max(abs(x), least)
                               for x in body[name]]  # fmt: skip
+        if body.get("orientation") is not None:  # of a resolved cell it is a unit quaternion
+            q = np.array(body["orientation"])
+            body["orientation"] = (q / np.linalg.norm(q)).tolist()
     for body in tree["scene"]["bodies"].values():
         if body["shape"]["kind"] == "plane":
             body["shape"]["offset"] += size * draw.uniform(-1.0, 1.0) * far

@@ -4,7 +4,9 @@ Few sweeps and deep overlap make a drawn scene's motion as sensitive as it likes
 measure: how far the same scene gets from itself where its bodies stand, turn and fly by 1e-13 of
 what they do otherwise. A view rounds each number once or twice more, by 1e-16 of it: a thousandth
 of that is due. What it may be off by is ten times that, for three samples do not find the worst
-direction, and 1e-11 of the largest number. Steps from which on a scene is known to 1e-4 of its
+direction, and 1e-11 of the largest number. Small bodies far away turn by more, as much as moves
+their ends by 1e-13 of where they stand: contacts act at places of the world, and arms are
+differences of these. Steps from which on a scene is known to 1e-4 of its
 numbers at best say nothing.
 
 Before that all is moved by 1e-3: where bodies stand at one place, or faces are parallel, a view
@@ -82,7 +84,8 @@ def seen_otherwise(
     poses = plain.rows.pose
     known = np.zeros((*poses.shape[:2], 4))
     for sample in range(SAMPLES):
-        other = run(nudged(cell, NUDGE, sample), spec, cell.steps).rows.pose
+        moved = nudged(cell, NUDGE, sample, arms=True)
+        other = run(moved, spec, cell.steps).rows.pose
         if other.shape != poses.shape:
             return [], 0
         known = np.maximum(known, apart(poses, other))

@@ -238,6 +238,7 @@ _MOVED: list[tuple[str, str]] = [
     *[(f"to_{kind}{axis}", "f8") for kind in "vw" for axis in "xyz"],  # velocity, spin aimed at
     *[(f"from_{axis}", "f8") for axis in ("x", "y", "z", "qw", "qx", "qy", "qz")],  # pose
     ("again", "i8"),  # 1: its springs are looked for; 2: and contacts push what they join
+    ("placed", "i8"),  # 1: its velocity before contacts is that of a union which is placed
     ("worked", "i8"),  # of a union's first body, 1: surfaces do work on it or store energy
     # How much later than in the mean of the step its velocity carries and turns it: -1 to 1.
     *[("late", "f8"), ("late_turn", "f8")],

@@ -207,9 +207,14 @@ def test_a_row_of_the_start_lasts_where_it_is_closed_and_calm() -> None:
 
 @pytest.mark.parametrize("axis", "xyz")
 @pytest.mark.parametrize("twisted", [0, 1])
-def test_what_a_torque_adds_is_no_approach_of_the_start(axis: str, twisted: int) -> None:
-    """v_n before forces is J v_0, whatever a force off the centre adds to the spin of the step."""
-    row = Row(np.random.default_rng(3)).begins(phi=0.0, dv_n=0.0)
+@pytest.mark.parametrize("c", [0.0, 1e-4])
+def test_what_a_torque_adds_is_no_approach_of_the_start(axis: str, twisted: int, c: float) -> None:
+    """v_n before forces is J v_0, whatever a force off the centre adds to the spin of the step.
+
+    The row of a spring that is not pressed asks v_1 + J v_0 + gamma lambda >= 0.
+    """
+    row = Row(np.random.default_rng(3), SPRUNG)
+    row.begins(phi=0.0, dv_n=0.0, spring_compliance=c, damping_ratio=0.0)
     row.turned_by(0.0)  # J v_0: at rest
     motion = records(np.zeros(2, dtype(MOTION)))
     for i in range(2):
@@ -218,9 +223,11 @@ def test_what_a_torque_adds_is_no_approach_of_the_start(axis: str, twisted: int)
     row.lead[twisted][f"w{axis}"] += 1.0
     row.contact.v_n_pre = (row.scene.jacobian @ row.scene.motion)[0]
     assert abs(row.contact.v_n_pre) > CALM
-    interpreted(midpoint_rows.make_lasting(SPEC))(row.contact, row.lead, motion, PARAMS)
+    row.contact.target = row.contact.v_n_pre  # of a spring, as `capture` leaves it
+    LASTING(row.contact, row.lead, motion, PARAMS)
     assert row.contact.lasts == 1
     assert abs(row.contact.begin_n) < 1e-13  # sums of a dozen numbers near 1
+    assert c == 0.0 or abs(row.contact.target) < 1e-13
 
 
 IS_MOVING = interpreted(midpoint_rows.make_is_moving(SPEC))

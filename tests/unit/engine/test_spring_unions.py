@@ -16,6 +16,7 @@ from lavendersim.engine.spring_unions import make_unions
 SPEC = Spec(effects=("spring", "contact_midpoint"))
 UNIONS = make_unions(SPEC, make_place(SPEC))
 JOIN, PUT, PULL = (interpreted(one) for one in (UNIONS.join, UNIONS.put, UNIONS.pull))
+PART = interpreted(UNIONS.part)
 SHIFT = ("shift_x", "shift_y", "shift_z")
 BODY = np.dtype([("inv_m", "f8"), *((n, "f8") for n in SHIFT), ("group", "i8"), ("again", "i8"), ("sprung", "i8")])  # noqa: E501  # fmt: skip
 LINK = np.dtype([("a", "i8"), ("b", "i8"), ("active", "i8"), ("again", "i8")])
@@ -122,3 +123,25 @@ def test_what_is_held_and_not_moved_slows_down() -> None:
     assert velocities.array["vy"][1] == 4.0
     PUT(state, rows, 1, 0.0, 0.1)
     assert 0.0 < velocities.array["vy"][1] < 4.0
+
+
+AIM = ("to_vx", "to_vy", "to_vz", "pulled_x", "pulled_y", "pulled_z")
+
+
+@pytest.mark.parametrize("again", [0, 1])
+def test_what_no_contact_joins_to_a_spring_any_more_has_all_its_forces(again: int) -> None:
+    """2 and 3 push each other, 1 has a spring to the floor; all were placed, by no force at all."""
+    rows = Rows(np.zeros(4, np.dtype([*BODY.descr, ("placed", "i8"), *((n, "f8") for n in AIM)])))
+    rows.array["inv_m"][1:], rows.array["placed"][1:] = 1.0, 1
+    rows.array["again"][1:], rows.array["sprung"][1:] = again, BOTH
+    rows.array["pulled_z"][1:] = -0.5
+    motion = table(VELOCITY, *[(3.0, 2.0, 1.0)] * 4)
+    links = table(LINK, (0, 1, 1, 0))
+    contacts = table(CONTACT, (1, 2, 0.0), (2, 3, 1.0), (0, 1, 1.0))
+    JOIN(links, rows, contacts, len(contacts), False)
+    assert PART(links, rows, motion)
+    aims = np.column_stack([rows.array[name] for name in AIM[:3]])
+    assert aims.tolist() == [[0.0] * 3, [0.0] * 3, [3.0, 2.0, 0.5], [3.0, 2.0, 0.5]]
+    assert rows.array["again"].tolist() == [0, 1, 0, 0]
+    assert rows.array["sprung"].tolist() == [0, BOTH, 0, 0]
+    assert not PART(links, rows, motion)

@@ -1,0 +1,68 @@
+"""What the balances of the fuzz allow: laws that hold for other than contacts at rest, by hand."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from fuzz_balances import TAKEN_BACK, State, Steps, _gap, _momentum, _penetration
+
+DT, MASS = 0.01, 2.0
+
+
+def steps_of(contacts: list[dict[str, float]], count: int = 2, v: Any = 0.0) -> Steps:
+    """Return steps of a fixed body and of one that has the speeds v, (steps + 1) [m/s]."""
+    velocity = np.zeros((count + 1, 2, 3))
+    velocity[:, 1, 2] = v
+    zeros = np.zeros((count, 2))
+    still = State(
+        np.tile([0.0, MASS], (count, 1)), zeros, velocity[:-1], np.zeros((count, 2, 3)),
+        np.zeros((count, 2, 3)), np.zeros((count, 3)), zeros, np.full(count, DT),
+    )  # fmt: skip
+    names = {name: "i8" if name in ("step", "body_a", "body_b", "joint") else "f8"
+             for row in contacts for name in row}  # fmt: skip
+    rows = np.zeros(len(contacts), list(names.items()))
+    for place, row in enumerate(contacts):
+        for name, value in row.items():
+            rows[name][place] = value
+    return Steps(still, still._replace(velocity=velocity[1:]), rows, rows["step"] - 1, zeros)
+
+
+def cell_of(cone: str = "disc", warm_start: bool = False) -> Any:
+    numerics = SimpleNamespace(friction_cone=cone, warm_start=warm_start)
+    free = SimpleNamespace(drag=None)
+    scene = SimpleNamespace(bodies={"floor": free, "ball": free}, forces=[], springs=[])
+    return SimpleNamespace(numerics=numerics, scene=scene)
+
+
+@pytest.mark.parametrize("joint", [0, 1])
+def test_a_stop_that_its_joint_tears_past_is_no_overlap(joint: int) -> None:
+    """Its depth is an arm, as long as the axis is far, times the turn that is missing."""
+    steps = steps_of([{"step": 2, "joint": joint, "penetration": 5.0}])
+    rows: Any = SimpleNamespace(step={"max_penetration": np.array([0.0, 0.0, 5.0])})
+    assert bool(_penetration(rows, steps)) == (joint == 0)
+
+
+@pytest.mark.parametrize("cone", ["disc", "convex"])
+@pytest.mark.parametrize("grain", [False, True])
+def test_what_slides_under_the_convex_cone_is_pushed_ahead(cone: str, grain: bool) -> None:
+    """w_n = mu |w_t|, with a grain |F w_t|: ends mu |w_t| dt, or 0.5 m/s dt, away."""
+    row = {"step": 1, "body_a": 0, "body_b": 1, "impulse_n": 1.0, "inverse_effective_mass": 1.0,
+           "residual": 0.0, "slip_t1": 3.0, "slip_t2": 4.0, "friction": 0.1}  # fmt: skip
+    if grain:  # along t2 alone, by 0.125
+        row |= {"friction": 0.0, "friction_11": 0.0, "friction_12": 0.0, "friction_22": 0.125}
+    for separation, seen in ((0.49 * DT, cone == "disc"), (0.51 * DT, True)):
+        found = _gap(cell_of(cone), steps_of([row | {"separation": separation}]))
+        assert bool(found) == seen
+
+
+@pytest.mark.parametrize("warm_start", [False, True])
+def test_a_warm_start_rounds_by_the_impulses_of_the_step_before(warm_start: bool) -> None:
+    """100 N s, then none: what they leave as they are taken back is their last digits."""
+    row = {"step": 1, "body_a": 0, "body_b": 1, "nz": 1.0, "impulse_n": 100.0}
+    left = 0.5 * TAKEN_BACK * 100.0 / MASS
+    steps = steps_of([row], v=np.array([-50.0, 0.0, left]))
+    found = _momentum(cell_of(warm_start=warm_start), SimpleNamespace(step=np.zeros(3)), steps)
+    assert bool(found) == (not warm_start)
