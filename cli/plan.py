@@ -39,7 +39,7 @@ def plan(
     For a sweep the plan is the union over its cells, and names the cells that require each. Cells
     that differ in a choice between laws, such as the solver, share no union: one plan each.
     """
-    from lavendersim.peers.catalogue import LAVENDER
+    from lavendersim.peers.catalogue import LAVENDER, facts_of
     from lavendersim.runner import load_all
     from lavendersim.runner.log_size import expected_log_sizes
     from lavendersim.runner.plans import distinct, shared_plans
@@ -61,38 +61,19 @@ def plan(
         ]
         first = tables[0] if tables else {}
         document = {**first, "others": tables[1:], "expected_log_sizes": sizes}
-        document |= {"engines": [law_of(name) for name in others]} if others else {}
+        document |= {"engines": [facts_of(name) for name in others]} if others else {}
         printing.as_json(document | ({"formulas": numbers} if numbers else {}))
         return
     for one in explained:
         write(one, f"{experiment.name}: {one.title}")
     for name in others:
         typer.echo(f"{experiment.name}: engine {name}, which plans by itself")
-        for what, said in law_of(name).items():
+        for what, said in facts_of(name).items():
             typer.echo(f"  {what:<10} {said}")
     for line in number_lines(experiment):
         typer.echo(line)
     for line in size_lines(sizes, [cell.label for cell in cells]):
         typer.echo(line)
-
-
-def law_of(engine: str) -> dict[str, str]:
-    """Return what another engine solves, by its declaration."""
-    from lavendersim.peers.catalogue import installed_version, peer_of
-
-    peer = peer_of(engine)
-    reported = [one for one in peer.reports(engine) if one not in "xyz"]
-    return {
-        "engine": engine,
-        "version": installed_version(peer.name) or f"not installed: pip install {peer.package}",
-        "variant": peer.variants[engine].doc,
-        "law": peer.law,
-        "precision": "double" if peer.double else "single",
-        "reports": ", ".join(reported) or "nothing of contacts",
-        "iterations": peer.iterations,
-        "capacity": peer.capacity,
-        "repeats": peer.repeats,
-    }
 
 
 def number_lines(experiment: Experiment) -> list[str]:

@@ -115,12 +115,15 @@ def _write(
 ) -> list[str]:
     """Write the page; returns a sentence of each log that has no picture for its damage."""
     from lavendersim.figures import write_matrix
+    from lavendersim.peers.catalogue import facts_of
     from lavendersim.runner import open_run
     from lavendersim.runner.environment import processor
 
     pictured = {entry.case: entry for entry in reversed(made) if entry.run is not None}
     shown = {name: open_run(entry.run).cells[0] for name, entry in pictured.items()}
     place: dict[str, Any] = {"path": report, "what": what}
+    if what == "engine":
+        place["about"] = {engine: facts_of(engine) for engine in solvers}
     write_matrix(cases, solvers, made, left_out, shown=shown, processor=processor(), **place)
     typer.echo(f"report {report}", err=True)
     return [sentence for cell in shown.values() if (sentence := cell.damage())]
@@ -173,7 +176,8 @@ def _matrix(cases: Sequence[Case], solvers: Sequence[str], made: Sequence[Entry]
     table.add_column("case", footer="passed", no_wrap=True)
     for solver in solvers:
         # a word a line: names of three words would take the space of the entries
-        foot = f"{passed(made, solver)} of {len(cases)}"
+        run = sum(entry.solver == solver for entry in made)
+        foot = f"{passed(made, solver)} of {run}" if run else "not run"
         table.add_column(solver.replace("_", "\n"), footer=foot, vertical="bottom")
     places = {(entry.case, entry.solver): entry for entry in made}
     family = ""

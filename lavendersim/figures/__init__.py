@@ -100,13 +100,16 @@ def write_matrix(
     processor: str,
     path: Path,
     what: str = "solver",
+    about: Mapping[str, Mapping[str, str]] | None = None,
 ) -> None:
     """Write one self-contained HTML page: a matrix of cases and solvers, or engines (`what`).
 
     cases: `runner.solver_matrix.Case`; entries: `runner.matrix_entry.Entry`, those there are;
-    left_out: case -> why; shown: case -> the cell whose last state is drawn.
+    left_out: case -> why; shown: case -> the cell whose last state is drawn; about: solver ->
+    what is to be known of it, by term, its law among them.
     """
     from lavendersim.figures.report_matrix import Matrix
     from lavendersim.figures.report_matrix import write_matrix as write_page
 
-    write_page(Matrix(cases, solvers, entries, left_out, shown, processor, what), path)
+    given = (cases, solvers, entries, left_out, shown, processor, what, about or {})
+    write_page(Matrix(*given), path)

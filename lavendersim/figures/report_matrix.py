@@ -25,6 +25,7 @@ class Matrix(NamedTuple):
     shown: Mapping[str, Any]  # case -> the cell that is pictured
     processor: str
     what: str = "solver"  # or engine
+    about: Mapping[str, Mapping[str, str]] = {}  # by solver, what is to be known of it; "law"
 
 
 class EntryLook(NamedTuple):
@@ -72,7 +73,9 @@ def page(matrix: Matrix, folder: Path) -> str:
         reduced=any(case.reduced for case in matrix.cases),
         processor=matrix.processor,
         key=key,
-        case_count=len(matrix.cases),
+        spread=any(entry.least == entry.least for entry in matrix.entries),
+        counted=any(entry.contacts == entry.contacts for entry in matrix.entries),
+        about=list(matrix.about.items()),
         solvers=[_solver(matrix, solver) for solver in matrix.solvers],
         families=_families(matrix, folder),
         failures=list(filter(None, (_failures(matrix, solver) for solver in matrix.solvers))),
@@ -82,7 +85,8 @@ def page(matrix: Matrix, folder: Path) -> str:
 
 def _solver(matrix: Matrix, solver: str) -> dict[str, Any]:
     own = [entry.verdict for entry in matrix.entries if entry.solver == solver]
-    return {"name": solver, "words": solver.split("_"), "passed": own.count("passes")}
+    passed = {"passed": own.count("passes"), "run": len(own)}
+    return {"name": solver, "words": solver.split("_"), **passed}
 
 
 def _families(matrix: Matrix, folder: Path) -> list[dict[str, Any]]:
@@ -94,7 +98,7 @@ def _families(matrix: Matrix, folder: Path) -> list[dict[str, Any]]:
         cell = matrix.shown.get(case.name)
         row = {
             "name": case.name,
-            "short_name": short_name,
+            "words": short_name.split("_"),
             "reduced": case.reduced,
             "question": case.question,
             "picture": None if cell is None else picture(cell, SMALLER),
@@ -116,18 +120,19 @@ def _entry(entry: Any, folder: Path) -> dict[str, Any]:
     if entry.least == entry.least:
         text += f"\nover its starts {entry.least:.3g} to {entry.most:.3g}"
     counts = [
-        f"{value:.3g} {name} a step"
+        f"{value:.3g} {name}"
         for value, name in ((entry.contacts, "contacts"), (entry.iterations, "iterations"))
         if not math.isnan(value)
     ]
-    text += f"\n{', '.join(counts)}" if counts else ""
+    text += f"\n{', '.join(counts)} a step" if counts else ""
     log = "" if entry.log is None else address(entry.log, folder)
     found = {"look": look, "text": text, "was_run": True, "log": log, "cost": entry.cost}
     found |= {"number": "", "spread": "", "counts": counts}
     if entry.claim and not math.isnan(entry.number):
         found["number"] = f"{entry.number:.3g}"
         if entry.least == entry.least:
-            found["spread"] = f"{entry.least:.3g} to {entry.most:.3g}"
+            least, most = f"{entry.least:.3g}", f"{entry.most:.3g}"
+            found["spread"] = "at every start" if least == most else f"{least} to {most}"
     elif math.isnan(entry.cost):
         found["number"] = entry.verdict  # no run, and nothing to tell in a number
     return found

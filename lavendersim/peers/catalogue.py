@@ -18,6 +18,8 @@ MODULES: Final = ("mujoco", "rapier", "bullet", "physx", "dart", "drake")  # in 
 PEERS: Final[dict[str, Peer]] = {
     name: import_module(f"lavendersim.peers.{name}").PEER for name in MODULES
 }
+# What a config has without other keys.
+OUR_LAW: Final = "rigid contacts, Coulomb's cone, Newton's law of restitution"
 OURS: Final = ("sweeps of a step's solves", "grows with the contacts")
 # Every name that `engine` may have.
 NAMES: Final = (LAVENDER, *(variant for peer in PEERS.values() for variant in peer.variants))
@@ -79,6 +81,34 @@ def effort_of(engine: str) -> str:
         peer = peer_of(engine)
         iterations, capacity = peer.iterations, peer.capacity
     return f"iterations: {iterations}; room for contacts: {capacity}"
+
+
+def facts_of(engine: str) -> dict[str, str]:
+    """Return what an engine solves, how precisely and what it reports, by term."""
+    if engine == LAVENDER:
+        iterations, capacity = OURS
+        return {
+            "engine": engine,
+            "law": OUR_LAW,
+            "precision": "double",
+            "reports": "everything",
+            "iterations": iterations,
+            "capacity": capacity,
+            "repeats": "the same bits",
+        }
+    peer = peer_of(engine)
+    reported = [one for one in peer.reports(engine) if one not in "xyz"]
+    return {
+        "engine": engine,
+        "version": installed_version(peer.name) or f"not installed: pip install {peer.package}",
+        "variant": peer.variants[engine].doc,
+        "law": peer.law,
+        "precision": "double" if peer.double else "single",
+        "reports": ", ".join(reported) or "nothing of contacts",
+        "iterations": peer.iterations,
+        "capacity": peer.capacity,
+        "repeats": peer.repeats,
+    }
 
 
 def untried(engines: Iterable[str]) -> list[str]:

@@ -3,12 +3,14 @@
     python -m tests.benchmarks.engines [--runs DIR]   runs COMMANDS, keeps samples, writes tables
     python -m tests.benchmarks.engines --tables       writes the tables from what is kept
     python -m tests.benchmarks.engines --large        runs LARGE, keeps it beside them, likewise
+    python -m tests.benchmarks.engines --compare [CASE ...]   makes logs again: which differ?
 
 Every number is of `lavender check` or `lavender cost` with `--engine all`, of one commit on one
 machine. Kept in docs/engines are every entry of the matrix (check.json), every setting with every
-sample of its time (cost.json), and commands, commit, versions and the SHA-256 of every log
-(logs.json). Logs themselves are not kept. The same versions make the same bytes on a machine like
-it, so that the commands make them again, and logs.json says whether they are the same.
+sample of its time (cost.json), and commands, commit, versions, bytes and SHA-256 of every log
+(logs.json). Logs themselves are too large for a repository. The same versions make the same bytes
+on a machine like it: `--compare` makes them again, of all commands or of some cases of the matrix,
+and says of each whether it is the same.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from lavendersim.measures.cost_table import CostRow, CostTable
@@ -49,6 +52,7 @@ LARGE = [  # started once: a step of DART's takes a third of a second and more
     *("lavender", "check", "configs/cost/pyramid.yaml", "configs/cost/pile.yaml"),
     *("--engine", "all", "--starts", "1", "--yes", "--json"),
 ]
+Digests = dict[str, dict[str, str]]
 # Where somebody's run and kernels lay.
 PLACES = ("run", "log", "figures", "detail", "kernel cache")
 
@@ -77,6 +81,38 @@ def take_large(runs: Path) -> None:
     keep_large(json.loads(done.stdout), made(runs))
 
 
+def compare(cases: Sequence[str], runs: Path) -> list[str]:
+    """Make logs again, of some cases or of all commands; returns what is other than is kept."""
+    kept = json.loads((KEPT / "logs.json").read_text())
+    commands = [words for name, words in COMMANDS.items() if name == "check" or not cases]
+    for words in commands:
+        left = [one for one in words if not cases or is_asked(one, cases)]
+        subprocess.run([*left, "--runs", str(runs)], cwd=ROOT, stdout=subprocess.DEVNULL)
+    now = made(runs)
+    differ = [
+        f"{name}: {now[name]}, the kept logs are of {kept[name]}"
+        for name in ("commit", "processor", "versions")
+        if now[name] != kept[name]
+    ]
+    return differ + unequal_logs(kept["sha256"], now["sha256"])
+
+
+def is_asked(word: str, cases: Sequence[str]) -> bool:
+    """Return whether a word of a command is no config, or one of these cases."""
+    return not word.endswith(".yaml") or Path(word).stem in cases
+
+
+def unequal_logs(kept: Digests, found: Digests) -> list[str]:
+    """Return a sentence for each experiment of which a log is another one, or is not kept."""
+    sentences = []
+    for name, own in found.items():
+        before = kept.get(name, {})
+        other = [log for log, digest in own.items() if before.get(log) != digest]
+        if other:
+            sentences.append(f"{name}: {len(other)} of {len(own)} logs differ: {', '.join(other)}")
+    return sentences or ([] if found else ["no log was made"])
+
+
 def keep_large(check: Any, by: dict[str, Any]) -> None:
     """Keep the matrix of LARGE."""
     _write("large.json", {"command": " ".join(LARGE), **by, "check": without_places(check)})
@@ -94,6 +130,7 @@ def made(runs: Path) -> dict[str, Any]:
         "changed": bool(_git("status", "--porcelain", "--untracked-files=no")),
         "processor": processor(),
         "versions": versions() | engines,
+        "bytes": sum(log.stat().st_size for log in logs_of(runs)),
         "sha256": digests(runs),
     }
 
@@ -113,10 +150,15 @@ def without_places(data: Any) -> Any:
     return [without_places(one) for one in data] if isinstance(data, list) else data
 
 
-def digests(runs: Path) -> dict[str, dict[str, str]]:
+def logs_of(runs: Path) -> list[Path]:
+    """Return the logs of all runs; not those of `latest`, which is one of them."""
+    return sorted(runs.glob("*-*/cells/*.mcap"))
+
+
+def digests(runs: Path) -> Digests:
     """Return by experiment the SHA-256 of each log, by the cell that it is of."""
-    found: dict[str, dict[str, str]] = {}
-    for log in sorted(runs.glob("*-*/cells/*.mcap")):  # not those of `latest`, which is one of them
+    found: Digests = {}
+    for log in logs_of(runs):
         # 20261126T055000Z-rest-...: the name begins with its time
         own = found.setdefault(log.parent.parent.name.partition("-")[2], {})
         own[log.stem] = hashlib.sha256(log.read_bytes()).hexdigest()
@@ -273,7 +315,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--runs", type=Path, default=ROOT / "runs" / "engines")
     parser.add_argument("--tables", action="store_true")
     parser.add_argument("--large", action="store_true")
+    parser.add_argument("--compare", nargs="*", metavar="CASE")
     given = parser.parse_args(arguments)
+    if given.compare is not None:
+        with TemporaryDirectory() as runs:
+            differ = compare(given.compare, Path(runs))
+        sys.exit("\n".join(differ) if differ else 0)
     if given.large:
         take_large(given.runs.resolve())
     elif not given.tables:

@@ -28,6 +28,22 @@ def test_a_log_has_its_digest_under_its_experiment(tmp_path: Path) -> None:
     assert engines.digests(tmp_path) == {"rest-engine=all-1d4c6cdb": {"ab": empty}}
 
 
+def test_logs_made_again_are_compared_with_the_digests_that_are_kept() -> None:
+    kept = {"rest-1": {"a": "11", "b": "22"}, "stack-2": {"c": "33"}}
+    assert engines.unequal_logs(kept, {"rest-1": {"a": "11", "b": "22"}}) == []
+    (one,) = engines.unequal_logs(kept, {"rest-1": {"a": "11", "b": "20"}})
+    assert one == "rest-1: 1 of 2 logs differ: b"
+    assert engines.unequal_logs(kept, {"new-3": {"d": "44"}})  # of which nothing is kept
+    assert engines.unequal_logs(kept, {}) == ["no log was made"]
+
+
+def test_some_cases_alone_may_be_made_again() -> None:
+    words = engines.COMMANDS["check"]
+    left = [word for word in words if engines.is_asked(word, ["rest"])]
+    assert [word for word in left if word.endswith(".yaml")] == ["configs/scenes/rest.yaml"]
+    assert left[-4:] == ["--engine", "all", "--yes", "--json"]
+
+
 def test_an_engine_that_misses_the_target_says_how_near_it_came() -> None:
     target = {"target": 0.001, "sentence": "", "fragment": None}
     table = cost_table(

@@ -26,6 +26,16 @@ scene:
 numerics: {timestep: 1/1000}
 duration: 1
 """
+# Slower than any engine's threshold of sleep, for longer than any waits (2 s of Rapier and Bullet).
+SLOW = """
+scene:
+  gravity: [0, 0, 0]
+  bodies:
+    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [0, 0, 0],
+           velocity: [0.001, 0, 0]}
+numerics: {timestep: 1/60}
+duration: 5
+"""
 IMPACT = """
 scene:
   gravity: [0, 0, 0]
@@ -55,6 +65,17 @@ def test_no_speed_is_cut_off(name: str) -> None:
         for _ in range(5):
             world.step()
         assert world.velocities()[0] == pytest.approx([2000, 0, 0, 0, 0, 2000], rel=1e-5), variant
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_nothing_falls_asleep(name: str) -> None:
+    """A ball glides on at 1 mm/s for 5 s: 300 sums of 24 bits, each 2^-24 of 5 mm off at most."""
+    for variant in PEERS[name].variants:
+        world = world_of(SLOW, variant)
+        for _ in range(300):
+            world.step()
+        assert world.velocities()[0] == pytest.approx([1e-3, 0, 0, 0, 0, 0], rel=2**-23), variant
+        assert world.poses()[0][0] == pytest.approx(5e-3, rel=300 * 2**-24), variant
 
 
 @pytest.mark.parametrize(

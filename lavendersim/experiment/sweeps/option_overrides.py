@@ -63,12 +63,19 @@ def check_untouched(root: Node, axes: Sequence[Sequence[SweptAxis]], report: Rep
 
 
 def _with_axis(root: Node, name: str, axis: Node, report: Report) -> Node:
-    sweep = root.get("sweep")
-    if sweep.items:
-        sentence = "sweep is a list of products in this file; an axis is added to a mapping alone"
+    products = root.get("sweep").items
+    if not products:
+        return graft(root, ("sweep", name), axis)
+    if any(name in product.entries for product in products):
+        sentence = (
+            f"{name} is an axis of a list of products in this file, each with its own values; "
+            "expected a name of none of them"
+        )
         report.add(axis.mark, sentence)
         return root
-    return graft(root, ("sweep", name), axis)
+    for place in range(len(products)):  # what all of them list, times the new axis
+        root = graft(root, ("sweep", place, name), axis)
+    return root
 
 
 def _parsed(text: str, begin: Mark, report: Report) -> Node | None:

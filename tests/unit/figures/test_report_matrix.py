@@ -105,8 +105,32 @@ def test_a_square_has_the_number_behind_its_verdict_or_says_that_the_case_was_re
     assert ">0.25<" in squares[-2]
     assert ">0.2 to 0.3<" in squares[-2]  # over its starts
     assert "drift: 0.25, expected at most 0.1" in squares[-2]
-    assert ">12 contacts a step<" in squares[-2]
-    assert ">2.5 iterations a step<" in squares[-2]
+    assert ">12 contacts<" in squares[-2]
+    assert ">2.5 iterations<" in squares[-2]
+    assert "12 contacts, 2.5 iterations a step" in squares[-2]  # pointed at
     assert ">refused<" in squares[-1]
     assert "a step" not in squares[-1]
     assert "nan" not in text
+
+
+def test_starts_that_agree_in_all_digits_shown_need_no_range() -> None:
+    one = entry("drop", "adaptive")
+    one.least, one.most = 0.25, 0.2500001
+    (square,) = re.findall(r'<td class="entry passes.*?</td>', page(matrix(one), Path()), re.DOTALL)
+    assert ">at every start<" in square
+    assert "over its starts 0.25 to 0.25" in square  # pointed at
+
+
+def test_a_solver_passes_of_the_cases_that_it_was_put_to() -> None:
+    text = page(matrix(entry("drop", "adaptive"), entry("tall/jenga", "adaptive", "fails")), Path())
+    ours, other = re.findall(r'<th class="solver".*?</th>', text, re.DOTALL)
+    assert ours.endswith("<b>1</b> of 2</th>")
+    assert other.endswith("not run</th>")
+
+
+def test_what_engines_solve_stands_on_their_page() -> None:
+    facts = {"jacobi": {"law": "soft contacts, a pyramid", "precision": "single"}}
+    text = page(matrix(entry("drop", "jacobi"))._replace(what="engine", about=facts), Path())
+    assert "<b>jacobi</b> soft contacts, a pyramid</summary>" in text
+    assert "<dt>precision</dt><dd>single</dd>" in text
+    assert "What they solve" not in page(matrix(entry("drop", "jacobi")), Path())

@@ -22,7 +22,14 @@ numerics: chapter
 duration: 0.1
 """
 SWEPT = TEXT + "sweep: {mass: {path: scene.bodies.ball.mass, values: [1, 2]}}\n"
-PRODUCTS = TEXT + "sweep: [{mass: {path: scene.bodies.ball.mass, values: [1, 2]}}]\n"
+PRODUCTS = (
+    TEXT
+    + """\
+sweep:
+- mass: {path: scene.bodies.ball.mass, values: [1, 2]}
+- {mass: {path: scene.bodies.ball.mass, values: [3]}, t: {path: duration, values: [0.2]}}
+"""
+)
 
 
 def loaded(*overrides: str, text: str = TEXT) -> Experiment:
@@ -65,6 +72,14 @@ def test_an_axis_is_added_or_stands_in_the_place_of_one() -> None:
     assert [cell.label for cell in other.cells()] == ["mass=3"]
 
 
+def test_an_axis_is_added_to_every_product_of_a_list() -> None:
+    """(A + B) x h is A x h + B x h: each cell of the file, at each of the new values."""
+    before = [cell.label for cell in loaded(text=PRODUCTS).cells()]
+    after = [cell.label for cell in loaded("sweep h=numerics.timestep:[1/60, 1/120]", text=PRODUCTS).cells()]  # noqa: E501  # fmt: skip
+    assert len(before) == 3
+    assert sorted(after) == sorted(f"{one}, h={h}" for one in before for h in ("1/60", "1/120"))
+
+
 @pytest.mark.parametrize(
     ("text", "override", "at", "said"),
     [
@@ -84,9 +99,9 @@ def test_an_axis_is_added_or_stands_in_the_place_of_one() -> None:
         (SWEPT, "set scene.bodies.ball.mass=3", "3", "is varied by axis mass; expected --sweep"),
         (
             PRODUCTS,
-            "sweep h=numerics.timestep:[1/60]",
-            "numerics",
-            "is a list of products in this file",
+            "sweep mass=scene.bodies.ball.mass:[3]",
+            "scene",
+            "mass is an axis of a list of products in this file",
         ),
     ],
 )
