@@ -109,7 +109,7 @@ FAMILIES = (
     Family(texts=(scenes.SPRINGY, scenes.LINKED), shape_pairs=BALLS_AND_BOXES),
     Family(("effects/joint", "effects/motor"), (scenes.JOINTED,), BALLS_AND_BOXES),
     Family(texts=(scenes.JOINTED_APART,)),
-    Family(("effects/rope", "effects/spring", "hard/contact/soft_to_stiff")),
+    Family(("effects/rope", "effects/spring", "hard/contact/soft_to_stiff"), effects=("drag",)),
     Family(("effects/falling_restitution", "effects/cohesion")),
     Family(("scenes/oblique_impact", "hard/friction/rolling_resistance")),
     Family(("cost/residual_by_sweep", "hard/timestep/changes_during_the_run")),
