@@ -69,6 +69,7 @@ class Family(NamedTuple):
 # The first that has what a scene requires is taken: lean ones, which many scenes have, come first.
 FAMILIES = (
     Family(("scenes/drop",)),
+    Family(("scenes/free_rotation",)),
     Family(("time/ball_on_ball", "scenes/bullet", "time/corner_of_three_walls")),
     Family(("chapter/timestep_and_compliance", "paw_check/two_movable_masses")),
     Family(("scenes/pile", "scenes/pyramid")),
@@ -104,10 +105,11 @@ FAMILIES = (
             "sphere_cylinder",
         ),
     ),
-    # What gives way, and what ropes and springs tie. Joints have plans of their own: where
-    # `torsional_friction` is compiled in, Newton's method divides by their `k_torsion`, which is 0.
+    # What gives way, and what ropes and springs tie; what joints hold.
     Family(texts=(scenes.SPRINGY, scenes.LINKED), shape_pairs=BALLS_AND_BOXES),
-    Family(("effects/rope", "effects/spring", "hard/contact/soft_to_stiff")),
+    Family(("effects/joint", "effects/motor"), (scenes.JOINTED,), BALLS_AND_BOXES),
+    Family(texts=(scenes.JOINTED_APART,)),
+    Family(("effects/rope", "effects/spring", "hard/contact/soft_to_stiff"), effects=("drag",)),
     Family(("effects/falling_restitution", "effects/cohesion")),
     Family(("scenes/oblique_impact", "hard/friction/rolling_resistance")),
     Family(("cost/residual_by_sweep", "hard/timestep/changes_during_the_run")),

@@ -111,6 +111,60 @@ scene:
     - {a: brick, b: high, stiffness: 1, rest_length: 1}
 duration: 1
 """
+# What joints hold, with every kind, stop and motor, beside contacts.
+JOINTED = """
+scene:
+  surfaces:
+    one: {friction: 0.5}
+    two: {friction: 0}
+  bodies:
+    floor: {shape: {kind: plane}, surface: one}
+    post: {shape: {kind: sphere, radius: 0.1}, fixed: true, position: [0, 0, 5], surface: one}
+    brick:
+      shape: {kind: box, size: [0.2, 0.1, 0.3]}
+      mass: 1
+      position: [0, 0, 1]
+      velocity: [9, 0, 0]
+      angular_velocity: [1, 2, 3]
+      surface: one
+    other:
+      shape: {kind: box, size: [0.2, 0.1, 0.3]}
+      mass: 1
+      position: [0, 1, 1]
+      surface: one
+    ball: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [1, 0, 1], surface: one}
+    low: {shape: {kind: sphere, radius: 0.1}, mass: 1, position: [2, 0, 1], surface: two}
+  connections:
+    door: {kind: hinge, between: [post, brick], at: [0, 0, 4], axis: [0, 0, 1], limits: [-1, 1]}
+    shaft:
+      kind: hinge
+      between: [brick, other]
+      at: [0, 1, 1]
+      axis: [0, 0, 1]
+      motor: {speed: 1, max_torque: 1}
+    point: {kind: ball, between: [brick, ball], at: [0.5, 0, 1]}
+  forces:
+    - {body: brick, force: [1, 0, 0], frame: body}
+    - {body: other, force: [1, 0, 0]}
+duration: 1
+record: {velocities: true}
+"""
+# The same where nothing can touch: without contacts there is no order of impacts.
+JOINTED_APART = """
+scene:
+  bodies:
+    post: {shape: {kind: sphere, radius: 0.1}, fixed: true, position: [0, 0, 5]}
+    brick:
+      shape: {kind: box, size: [0.2, 0.1, 0.3]}
+      mass: 1
+      position: [0, 0, 1]
+      angular_velocity: [1, 2, 3]
+  connections: {door: {kind: hinge, between: [post, brick], at: [0, 0, 4], axis: [0, 0, 1]}}
+  forces:
+    - {body: brick, force: [1, 0, 0], frame: body}
+    - {body: brick, force: [1, 0, 0]}
+duration: 1
+"""
 # As long as an accuracy allows.
 ACCURATE = """
 scene:

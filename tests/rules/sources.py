@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -59,6 +60,7 @@ def modules(node: ast.AST, package: list[str]) -> list[str]:
     return []
 
 
+@cache
 def imports() -> list[Import]:
     """Return every import of every file: at the top, in functions, and for type checkers."""
     return [found for file in files() for found in imports_of(file)]

@@ -28,10 +28,15 @@ LISTED = {
 # Each module in a process forked from one that has loaded the libraries: nothing of ours is loaded.
 # Not those that their package has loaded before them: importing one first is importing the package.
 FIRST = """
-import json, os, sys
+import gc, json, os, sys
 import numba, numba.core.registry, numba.extending, llvmlite.ir, numpy
 import matplotlib.pyplot
-import pydantic.functional_validators, pydantic.json_schema  # both load late, half of a fork
+import pydantic, pydantic.functional_validators, pydantic.json_schema
+
+# Much of pydantic loads with the first model that is made, half of what a fork takes.
+pydantic.TypeAdapter(pydantic.create_model("First", number=(int, pydantic.Field(1))))
+gc.collect()
+gc.freeze()  # no fork looks through what was there before
 
 def loaded_by(name):
     come, go = os.pipe()

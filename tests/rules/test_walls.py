@@ -104,7 +104,6 @@ LIBRARIES = {
         for library in ("mujoco", "pybullet", "rapier3d", "sapien", "dartpy", "pydrake")
     },
 }
-IMPORTS = imports()
 
 
 def of_others(found: Import) -> bool:
@@ -122,7 +121,7 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
     allowed = {*ROOMS[room], room, "__version__"}
     strangers = [
         str(found)
-        for found in IMPORTS
+        for found in imports()
         if found.room == room
         and found.module.split(".")[0] in PACKAGES.values()
         and found.target not in allowed
@@ -132,7 +131,7 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
 
 def test_configs_are_read_with_no_more_of_the_engine_than_its_lists() -> None:
     rooms = ("cell", "experiment", "lint", "measures", "peers", "trace")
-    of_engine = [f for f in IMPORTS if f.room in rooms and f.target == "engine"]
+    of_engine = [f for f in imports() if f.room in rooms and f.target == "engine"]
     strangers = [
         str(f)
         for f in of_engine
@@ -146,37 +145,37 @@ def test_configs_are_read_with_no_more_of_the_engine_than_its_lists() -> None:
 def test_a_library_is_known_to_its_rooms_only(library: str) -> None:
     strangers = [
         str(found)
-        for found in IMPORTS
+        for found in imports()
         if found.target == library and found.room not in LIBRARIES[library]
     ]
     assert strangers == []
 
 
 def test_of_the_engine_only_keys_of_effects_know_quantities() -> None:
-    files = {str(f.file) for f in IMPORTS if f.room == "engine" and f.target == "quantities"}
+    files = {str(f.file) for f in imports() if f.room == "engine" and f.target == "quantities"}
     assert all(file.startswith("lavendersim/engine/effects/") for file in files)
 
 
 def test_one_file_knows_the_format_of_fclib() -> None:
     """h5py is an extra: without it every other file must still work."""
-    files = {str(found.file) for found in IMPORTS if found.target == "h5py"}
+    files = {str(found.file) for found in imports() if found.target == "h5py"}
     assert files == {"lavendersim/problems/fclib.py"}
 
 
 def test_one_file_knows_dask() -> None:
     names = {"dask", "distributed", "dask_jobqueue"}
-    files = {str(found.file) for found in IMPORTS if found.target in names}
+    files = {str(found.file) for found in imports() if found.target in names}
     assert files == {"lavendersim/runner/dask_cluster.py"}
 
 
 def test_no_other_library_is_imported() -> None:
-    unknown = [str(f) for f in IMPORTS if of_others(f) and f.target not in LIBRARIES]
+    unknown = [str(f) for f in imports() if of_others(f) and f.target not in LIBRARIES]
     assert unknown == []
 
 
 def test_the_rooms_form_no_circle() -> None:
     graph: dict[str, set[str]] = {room: set() for room in ROOMS if room != "__init__"}
-    for found in IMPORTS:
+    for found in imports():
         if found.room in graph and found.target in graph and found.target != found.room:
             graph[found.room].add(found.target)
     order = list(TopologicalSorter(graph).static_order())  # raises CycleError

@@ -20,8 +20,6 @@ ROOT = Path(__file__).parents[3]
 GOOD = sorted(ROOT.glob("configs/*/*.yaml"))
 BAD = ROOT / "tests" / "configs" / "bad"
 
-SCHEMA = json_schema()
-VALIDATOR = Draft7Validator(SCHEMA)
 WORDS_OF_2020 = {"$defs", "prefixItems", "discriminator", "dependentRequired"}
 
 
@@ -55,18 +53,28 @@ def schemas(schema: Any) -> Iterator[dict[str, Any]]:
             yield from schemas(value)
 
 
-def test_schema_is_sound_draft_7() -> None:
-    Draft7Validator.check_schema(SCHEMA)
-    assert json.loads(json.dumps(SCHEMA)) == SCHEMA
-    for schema in schemas(SCHEMA):
+@pytest.fixture(scope="module")
+def whole() -> dict[str, Any]:
+    return json_schema()
+
+
+@pytest.fixture(scope="module")
+def validator(whole: dict[str, Any]) -> Draft7Validator:
+    return Draft7Validator(whole)
+
+
+def test_schema_is_sound_draft_7(whole: dict[str, Any]) -> None:
+    Draft7Validator.check_schema(whole)
+    assert json.loads(json.dumps(whole)) == whole
+    for schema in schemas(whole):
         assert not WORDS_OF_2020 & set(schema)
         if "$ref" in schema:
             assert set(schema) == {"$ref"}, "draft 7 ignores what stands beside a $ref"
-            assert schema["$ref"].rpartition("/")[2] in SCHEMA["definitions"]
+            assert schema["$ref"].rpartition("/")[2] in whole["definitions"]
 
 
-def test_every_key_is_described() -> None:
-    for name, definition in {**SCHEMA["definitions"], "": SCHEMA}.items():
+def test_every_key_is_described(whole: dict[str, Any]) -> None:
+    for name, definition in {**whole["definitions"], "": whole}.items():
         for key, schema in definition.get("properties", {}).items():
             assert schema.get("description"), f"{name}.{key} has no description"
 
@@ -76,9 +84,9 @@ def test_there_are_good_configs() -> None:
 
 
 @pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
-def test_good_config_loads_and_fits_the_schema(path: Path) -> None:
+def test_good_config_loads_and_fits_the_schema(path: Path, validator: Draft7Validator) -> None:
     assert load_experiment(path).cells()
-    assert [error.message for error in VALIDATOR.iter_errors(read(path))] == []
+    assert [error.message for error in validator.iter_errors(read(path))] == []
 
 
 @pytest.mark.parametrize(
@@ -115,7 +123,7 @@ def test_good_config_loads_and_fits_the_schema(path: Path) -> None:
         "drag_misspelt",
     ],
 )
-def test_bad_config_does_not_fit_the_schema(case: str) -> None:
+def test_bad_config_does_not_fit_the_schema(case: str, validator: Draft7Validator) -> None:
     root = parse(next(BAD.rglob(f"{case}.yaml")).read_bytes(), Report(case))
     assert root is not None
-    assert not VALIDATOR.is_valid(plain(root.data))
+    assert not validator.is_valid(plain(root.data))
