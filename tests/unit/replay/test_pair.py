@@ -48,3 +48,22 @@ def test_a_body_of_one_log_alone_has_no_distance(two_bodies):
     assert [one.body for one in distances_of(LogPair(two_bodies, without, "a", "b")).bodies] == [
         "box"
     ]
+
+
+def test_names_in_titles_are_as_short_as_tells_them_apart(two_bodies):
+    early, late = "20261127T033502Z-", "20261127T033502Z.001-"
+
+    def short(a, b):
+        return LogPair(two_bodies, two_bodies, a, b).short_names
+
+    assert short(f"{early}rough-480cfbff", f"{late}smooth-cc1c1853") == ("rough", "smooth")
+    assert short(f"{early}rough-480cfbff", f"{late}rough-cc1c1853") == (
+        "rough-480cfbff",
+        "rough-cc1c1853",
+    )
+    whole = f"{early}rough-480cfbff", f"{late}rough-480cfbff"
+    assert short(*whole) == whole
+    assert short(f"{early}rough-480cfbff e=0.5", f"{early}rough-480cfbff e=1") == (
+        "rough e=0.5",
+        "rough e=1",
+    )
