@@ -96,8 +96,8 @@ def line_of(error: BaseException, file: str) -> int:
 
 def _refusal(function: Callable[..., Any], sentence: str) -> ConfigError:
     code = function.__code__
-    said = f"{function.__name__}: {sentence}"
-    return ConfigError([Defect(code.co_filename, code.co_firstlineno, 1, said)])
+    message = f"{function.__name__}: {sentence}"
+    return ConfigError([Defect(code.co_filename, code.co_firstlineno, 1, message)])
 
 
 def _kind_of(function: Callable[..., Any]) -> Kind:

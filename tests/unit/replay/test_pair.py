@@ -56,14 +56,14 @@ def test_names_in_titles_are_as_short_as_tells_them_apart(two_bodies):
     def short(a, b):
         return LogPair(two_bodies, two_bodies, a, b).short_names
 
-    assert short(f"{early}rough-480cfbff", f"{late}smooth-cc1c1853") == ("rough", "smooth")
-    assert short(f"{early}rough-480cfbff", f"{late}rough-cc1c1853") == (
-        "rough-480cfbff",
-        "rough-cc1c1853",
+    assert short(f"{early}dry-480cfbff", f"{late}icy-cc1c1853") == ("dry", "icy")
+    assert short(f"{early}dry-480cfbff", f"{late}dry-cc1c1853") == (
+        "dry-480cfbff",
+        "dry-cc1c1853",
     )
-    whole = f"{early}rough-480cfbff", f"{late}rough-480cfbff"
+    whole = f"{early}dry-480cfbff", f"{late}dry-480cfbff"
     assert short(*whole) == whole
-    assert short(f"{early}rough-480cfbff e=0.5", f"{early}rough-480cfbff e=1") == (
-        "rough e=0.5",
-        "rough e=1",
+    assert short(f"{early}dry-480cfbff e=0.5", f"{early}dry-480cfbff e=1") == (
+        "dry e=0.5",
+        "dry e=1",
     )
