@@ -16,6 +16,7 @@ from typing import Annotated, TextIO, cast
 import typer
 
 from lavender_cli import (
+    asking,
     check,
     cost,
     diff,
@@ -46,7 +47,6 @@ from lavender_cli import (
 os.environ.setdefault("NUMPY_MADVISE_HUGEPAGE", "0")
 
 DISK_FULL = 6
-INTERRUPTED = 130  # typer ends with it after Ctrl-C
 # What these do goes on when nobody reads what they print.
 WORKING = ("run", "check", "cost", "merge")
 
@@ -152,7 +152,7 @@ def main() -> None:
         typer.echo(f"{named}{(error.strerror or str(error)).lower()}", err=True)
         sys.exit(DISK_FULL if error.errno in going_on.DISK else 2)
     except SystemExit as end:
-        if end.code == INTERRUPTED:
+        if end.code == asking.INTERRUPTED:
             typer.echo("interrupted", err=True)
         raise
     except Exception:

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from lavender_cli.asking import answered
 from lavender_cli.completion import start_names
 
 
@@ -34,7 +35,7 @@ def new(
         if not (sys.stdin.isatty() and sys.stdout.isatty()):
             typer.echo("write one with: lavender new NAME [FILE]", err=True)
             return
-        picked: str = typer.prompt("Which? (number or name)")
+        picked = answered("Which? (number or name)")
         is_number = picked.isdecimal() and 1 <= int(picked) <= len(known)
         name = known[int(picked) - 1].name if is_number else picked
     start = start_named(name)

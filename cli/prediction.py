@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from lavender_cli import printing
+from lavender_cli.asking import confirmed
 
 if TYPE_CHECKING:
     from lavendersim.runner.cell_jobs import Prepared
@@ -50,7 +51,7 @@ def confirm(
         why += " and " * bool(why) + "more than a tenth of the free disk"
     if not _somebody_answers():
         raise UsageError(f"{which}: {why}; nothing has begun: say --yes, or set {VARIABLE}=1")
-    if not typer.confirm(f"{which}: {why}. Begin?", err=True):
+    if not confirmed(f"{which}: {why}. Begin?", err=True):
         raise UsageError("nothing has begun")
 
 

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from lavender_cli import printing
+from lavender_cli.asking import confirmed
 from lavender_cli.completion import run_names
 from lavender_cli.ls import Name, Newer, Older, Tag, VerdictOption, line_of, wanted_of
 from lavender_cli.run import Runs
@@ -63,7 +64,7 @@ def rm(
     if not yes:
         if not sys.stdin.isatty():
             raise UsageError(f"{what}: not removed, there is nobody to ask: --yes removes them")
-        if not typer.confirm(f"Remove {what}?"):
+        if not confirmed(f"Remove {what}?"):
             typer.echo("nothing is removed")
             return
     remove_leftovers(runs)

@@ -215,14 +215,19 @@ def run(
             confirm(each, runs, jobs, yes, [one for one in planned if one])
     with interruptible(command), Drawing(experiments if plot else ()) as drawing:
         for number, experiment in enumerate(experiments):
+            figures: list[Path] = []
             whole = finished_run(experiment, runs) if resume else None
             if whole is not None:
                 name = experiment.name
                 typer.echo(f"{name}: finished, nothing to resume: {whole.path}", err=True)
                 results = whole.results()
                 good = good and results.passed
+                drawn = plot and experiment.is_drawn  # what was ended may have been its figures
                 if as_json:
-                    tables.append({**results.as_json, "run": whole.path, "figures": []})
+                    tables.append({**results.as_json, "run": whole.path, "figures": figures})
+                if drawn:
+                    drawing.draw(number, whole)
+                    drawing.take(figures.extend if as_json else _print_figures)
                 continue
             printing.warn_of_mistakes(experiment)
             with on_full_disk(command), ExitStack() as open_now:
@@ -255,7 +260,6 @@ def run(
             refined = time_errors.refine(finished, jobs) if refine else []
             take: Callable[[list[Path]], None] = _print_figures
             if as_json:
-                figures: list[Path] = []
                 results = finished.run.results()
                 table = {**results.as_json, "run": finished.run.path, "figures": figures}
                 if refine:

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from lavendersim.measures.controls import meant_to_end_early
     from lavendersim.measures.interfaces import Trace
     from lavendersim.measures.judging import judge, judge_nodes
-    from lavendersim.measures.own_file import own_measure
     from lavendersim.measures.registration import measure
     from lavendersim.measures.registry import applies, evaluate
     from lavendersim.measures.specs.base import Measure
+    from lavendersim.measures.typed_functions import own_measure
     from lavendersim.measures.values import Values
     from lavendersim.measures.verdict import Verdict
 
@@ -32,7 +32,7 @@ _HOME = {
     "meant_to_end_early": "controls",
     "measure": "registration",
     "outcomes_of": "always",
-    "own_measure": "own_file",
+    "own_measure": "typed_functions",
 }
 
 __all__ = [

@@ -1,61 +1,32 @@
 """Measures of a project's own: typed functions over a log in a file `measures.py`.
 
-    from lavendersim.measures import Trace, own_measure
-    from lavendersim.quantities.names import BodyName
-
-    @own_measure
-    def highest(trace: Trace, body: BodyName, above: float = 0.0) -> float:
-        \"\"\"Greatest height [m] of a body's centre over a level.\"\"\"
-        return float(trace.pose[:, trace.bodies.index(body), 2].max()) - above
-
-The function's name is the kind, its parameters are those of the kind, checked by their types. The
-file is run where a config beside it names a kind of it, and in the processes that its cells run in.
+A function of it that `own_measure` registers is a kind of measure: see `typed_functions`. The file
+is run where a config beside it names a kind of it, and in the processes that its cells run in.
 """
 
 from __future__ import annotations
 
 import hashlib
-import inspect
-import linecache
 import sys
-import traceback
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
-from typing import Annotated, Any, Final, NamedTuple, TypeVar, get_type_hints
+from typing import Any, Final, NamedTuple
 
-import numpy as np
-from pydantic import Field, create_model
-
-from lavendersim.errors import ConfigError, Defect, LavenderError, UsageError
+from lavendersim.errors import ConfigError, Defect, UsageError
 from lavendersim.measures.interfaces import Trace, Value
 from lavendersim.measures.specs.base import Measure
 from lavendersim.measures.specs.catalogue import KINDS
 from lavendersim.measures.specs.own import FILE, FromFile
-from lavendersim.quantities.model import ConfigModel
-from lavendersim.quantities.quantity import Quantity
+from lavendersim.measures.typed_functions import Kind, kind_of, line_of, take
 
 LARGEST: Final = 1 << 20  # [byte]
-Function = TypeVar("Function", bound=Callable[..., Any])
-_MARK: Final = "_lavender_own_measure"
-# Refused in the words of all numbers of a config, and finite.
-_NUMBERS: Final[dict[Any, Any]] = {
-    float: Annotated[float, Quantity("")],
-    int: Annotated[int, Quantity("", whole=True)],
-}
+TAKEN: Final = "there is a measure of this name already"
 
 
 class NoSourceError(UsageError):
     """A measure is of a file that this process may not run."""
-
-
-class Kind(NamedTuple):
-    """A kind of measure that a file defines."""
-
-    function: Callable[..., Any]
-    model: type[ConfigModel]  # of its parameters
-    meaning: str  # with its unit in brackets
 
 
 class OwnFile(NamedTuple):
@@ -64,16 +35,6 @@ class OwnFile(NamedTuple):
     path: str  # as it is called in messages
     sha256: str
     kinds: dict[str, Kind]
-
-
-def own_measure(function: Function) -> Function:
-    """Register a function of a file `measures.py` as a kind of measure, by its name.
-
-    Its first parameter is the log (`Trace`); all others have a type. It returns a float or a row of
-    numbers; NaN where the log cannot answer.
-    """
-    setattr(function, _MARK, True)
-    return function
 
 
 def read_own(path: Path, called: str = "") -> OwnFile:
@@ -109,19 +70,7 @@ def evaluate_own(spec: FromFile, trace: Trace) -> Value:
         raise UsageError(f"{spec.file}: has no measure {spec.function!r}, as a run of it says")
     kind = known[spec.function]
     given = kind.model.model_validate(_plain(spec.parameters)).model_dump()
-    try:
-        value = kind.function(trace, **given)
-        row = np.asarray(value, dtype=np.float64)
-    except LavenderError:
-        raise
-    except Exception as error:
-        line = _line_of(error, spec.sha256)
-        what = f"{type(error).__name__}: {error}".rstrip(": ")
-        raise UsageError(f"{spec.file}:{line}: {spec.function}: {what}") from error
-    if row.ndim > 1:
-        what = f"expected a number or a row, found {row.ndim}-D"
-        raise UsageError(f"{spec.file}: {spec.function}: {what}")
-    return float(row) if row.ndim == 0 else row
+    return take(kind, trace, given, spec.file)
 
 
 def may_measure(measures: Iterable[Measure]) -> bool:
@@ -158,53 +107,21 @@ def _run(sha256: str, source: str, path: str) -> OwnFile:
     try:
         exec(compile(source, _code_name(sha256), "exec"), vars(module))
         kinds = {
-            key: _kind_of(key, value)
+            key: kind
             for key, value in vars(module).items()
-            if getattr(value, _MARK, False) and getattr(value, "__module__", "") == name
+            if (kind := kind_of(value)) and getattr(value, "__module__", "") == name
         }
+        if taken := [kind.refusal(TAKEN) for key, kind in kinds.items() if key in KINDS]:
+            raise taken[0]
     except SyntaxError as error:
         raise ConfigError([Defect(path, error.lineno or 1, error.offset or 1, error.msg)]) from None
     except ConfigError as error:
         raise ConfigError([one._replace(file=path) for one in error.defects]) from None
     except Exception as error:
         what = f"{type(error).__name__}: {error}".rstrip(": ")
-        raise ConfigError([Defect(path, _line_of(error, sha256), 1, what)]) from error
+        raise ConfigError([Defect(path, line_of(error, _code_name(sha256)), 1, what)]) from error
     return OwnFile(path, sha256, kinds)
 
 
 def _code_name(sha256: str) -> str:
     return f"<{FILE} {sha256[:16]}>"
-
-
-def _line_of(error: BaseException, sha256: str) -> int:
-    """Return the last line of the file that an error went through."""
-    frames = traceback.extract_tb(error.__traceback__)
-    linecache.checkcache()
-    lines = [one.lineno for one in frames if one.filename == _code_name(sha256) and one.lineno]
-    return lines[-1] if lines else 1
-
-
-def _kind_of(name: str, function: Callable[..., Any]) -> Kind:
-    line = function.__code__.co_firstlineno
-
-    def refuse(sentence: str) -> ConfigError:
-        return ConfigError([Defect(FILE, line, 1, f"{name}: {sentence}")])
-
-    if name in KINDS:
-        raise refuse("there is a measure of this name already")
-    hints = get_type_hints(function, include_extras=True)
-    parameters = list(inspect.signature(function).parameters.values())[1:]  # behind the log
-    fields: dict[str, Any] = {}
-    for one in parameters:
-        if one.kind not in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY):
-            raise refuse(f"{one.name}: expected a parameter that has a name")
-        if one.name not in hints:
-            raise refuse(f"{one.name}: expected a type, such as {one.name}: float")
-        if one.name in {*Measure.model_fields, "kind"}:
-            raise refuse(f"{one.name}: every measure has this key already; rename it")
-        default = ... if one.default is one.empty else one.default
-        hint = _NUMBERS.get(hints[one.name], hints[one.name])
-        fields[one.name] = (hint, Field(default=default, description=""))
-    model = create_model(name, __base__=ConfigModel, **fields)
-    meaning = " ".join((inspect.getdoc(function) or "").split("\n\n")[0].split())
-    return Kind(function, model, meaning)

@@ -5,6 +5,7 @@ Bodies are the same by their names; distances are those of centres, at times tha
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -17,6 +18,9 @@ from lavendersim.geometry.poses import distances
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
 
+# A run's directory: its time, what ran in it, a digest. What is behind, a cell's label, stays.
+_STAMP: Final = r"^\d{8}T\d{6}Z(\.\d{3})?-"
+_DIGEST: Final = r"-[0-9a-f]{8}(?= |$)"
 MOST_CURVES: Final = 8  # of the bodies that come farthest: more cannot be distinguished
 
 
@@ -33,6 +37,16 @@ class LogPair(NamedTuple):
     def path(self) -> Path:
         """Where the first log is."""
         return self.a.path
+
+    @property
+    def short_names(self) -> tuple[str, str]:
+        """The names without times and digests, where these tell them apart: titles have no room."""
+        names = self.name_a, self.name_b
+        for left_out in (f"{_STAMP}|{_DIGEST}", _STAMP):
+            a, b = (re.sub(left_out, "", name) for name in names)
+            if a != b:
+                return a, b
+        return names
 
 
 class Distance(NamedTuple):

@@ -110,15 +110,16 @@ def _blueprint(
         for plot in _PLOTS
     ]
     ruler = f"; {scale.label}" if scale is not None else ""
+    name_a, name_b = pair.short_names
     if pair.overlay:
-        name = f"A: {pair.name_a}, B as pale lines: {pair.name_b}{ruler}"
+        name = f"A: {name_a}, B as pale lines: {name_b}{ruler}"
         seen = [*contents_of(A, scale is not None), *contents_of(B, False)]
         view = scene_view(name, seen, camera, A)
         beside = rrb.Horizontal(view, rrb.Vertical(*curves), column_shares=[3, 2])
         return laid_out(beside, seconds, speed)
     views = [
         scene_view(f"{layer.name}: {name}{ruler}", contents_of(layer, True), camera, layer)
-        for layer, name in ((A, pair.name_a), (B, pair.name_b))
+        for layer, name in ((A, name_a), (B, name_b))
     ]
     rows = rrb.Vertical(rrb.Horizontal(*views), rrb.Horizontal(*curves), row_shares=[3, 2])
     return laid_out(rows, seconds, speed)

@@ -44,7 +44,7 @@ from .run_directory import (
     check_latest,
     point_latest,
 )
-from .run_index import ENDED, PENDING
+from .run_index import ENDED, PENDING, logs_closed
 from .run_lock import run_lock
 from .run_seal import DONE, seal_of
 
@@ -293,7 +293,9 @@ def _run_cells(
                 taken |= cell.measured
                 progress.cell_done(len(ended), len(by_log))
     except Interrupted as end:
-        whole = f"{len(ended)} of {len(by_log)} cells are whole"
+        # Other processes have closed logs whose results did not come.
+        closed = {path.name for path in ended} | logs_closed(directory)
+        whole = f"{len(closed)} of {len(by_log)} cells are whole"
         raise Interrupted(f"{experiment.name}: {end}: {whole}, {directory}") from None
     finally:
         index = _index_of(experiment, pending, configs, ended)

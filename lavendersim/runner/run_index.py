@@ -16,6 +16,8 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from lavendersim.trace.whole import INTERRUPTED
+
 if TYPE_CHECKING:
     from lavendersim.trace import LogDigest
 
@@ -63,6 +65,12 @@ def ended_rows(directory: Path) -> dict[str, dict[str, Any]]:
     except FileNotFoundError:
         return {}
     return {one["file"]: one for one in map(json.loads, lines)}
+
+
+def logs_closed(directory: Path) -> set[str]:
+    """Return the names of the logs of cells that ended by themselves, measured or not."""
+    rows = ended_rows(directory)
+    return {name for name, row in rows.items() if not row["status"].startswith(INTERRUPTED)}
 
 
 def drop_cut_line(directory: Path) -> None:

@@ -55,6 +55,22 @@ def test_figures_are_reported_with_their_runs_and_are_those_of_plot(tmp_path: Pa
             assert (tmp_path / one).read_bytes() == (tmp_path / "again" / one.name).read_bytes()
 
 
+def test_figures_of_a_run_that_is_finished_are_drawn_where_it_goes_on(tmp_path: Path) -> None:
+    """As where a signal came while they were drawn: the command that goes on draws them."""
+    write(tmp_path)
+    assert lavender("run", "first.yaml", where=tmp_path).returncode == 0
+    for more in ((), ("--json",)):
+        done = lavender("run", "first.yaml", "--resume", "--plot", *more, where=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert "finished, nothing to resume" in done.stderr
+        assert len([*(tmp_path / "runs").glob("2*")]) == 1
+        drawn = json.loads(done.stdout)[0]["figures"] if more else done.stdout.split()[1::2]
+        assert [Path(path).name for path in drawn] == ["first.png", "first.svg"]
+    assert lavender("plot", "-o", "again", where=tmp_path).returncode == 0
+    for path in (tmp_path / "again").iterdir():
+        assert (tmp_path / "runs/latest/figures" / path.name).read_bytes() == path.read_bytes()
+
+
 def test_json_has_the_figures_of_each_run(tmp_path: Path) -> None:
     write(tmp_path)
     done = lavender("run", *(f"{n}.yaml" for n in NAMES), "--plot", "--json", where=tmp_path)

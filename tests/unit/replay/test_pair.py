@@ -48,3 +48,22 @@ def test_a_body_of_one_log_alone_has_no_distance(two_bodies):
     assert [one.body for one in distances_of(LogPair(two_bodies, without, "a", "b")).bodies] == [
         "box"
     ]
+
+
+def test_names_in_titles_are_as_short_as_tells_them_apart(two_bodies):
+    early, late = "20261127T033502Z-", "20261127T033502Z.001-"
+
+    def short(a, b):
+        return LogPair(two_bodies, two_bodies, a, b).short_names
+
+    assert short(f"{early}dry-480cfbff", f"{late}icy-cc1c1853") == ("dry", "icy")
+    assert short(f"{early}dry-480cfbff", f"{late}dry-cc1c1853") == (
+        "dry-480cfbff",
+        "dry-cc1c1853",
+    )
+    whole = f"{early}dry-480cfbff", f"{late}dry-480cfbff"
+    assert short(*whole) == whole
+    assert short(f"{early}dry-480cfbff e=0.5", f"{early}dry-480cfbff e=1") == (
+        "dry e=0.5",
+        "dry e=1",
+    )

@@ -1,6 +1,7 @@
 """A run that was killed goes on where it was, and ends as one that was never interrupted.
 
-`LAVENDER_TEST_KILLS` kills more often than once for each config and number of processes;
+Each of three configs is killed with one and two processes, once; every night 17 times, 102 in all.
+`LAVENDER_TEST_KILLS` is another number;
 `python -m tests.property.killed_runs` does as often as is asked for.
 """
 
@@ -26,8 +27,9 @@ from tests.forked_python import python
 from tests.property.killed_runs import CONFIGS, prepared, wrong_when_resumed
 from tests.runner.run_contents import contents
 from tests.runner.small_configs import DROPS, write
+from tests.thorough import THOROUGH
 
-KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "1"))
+KILLS = int(os.environ.get("LAVENDER_TEST_KILLS", "17" if THOROUGH else "1"))
 
 
 @pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does")
@@ -155,6 +157,15 @@ def test_a_line_of_an_older_version_does_not_do(drops: Path, tmp_path: Path) -> 
     (left.path / "ended.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
     found, said = resumed(drops, tmp_path / "runs")
     assert said[1:] == ["1 run again: it was not noted how it ended"]
+    assert contents(found) == whole
+
+
+def test_cells_that_failed_are_run_again(tmp_path: Path) -> None:
+    drops = write(tmp_path, DROPS + "always: {penetration: 1e-9}\n")
+    whole = contents(run(drops, tmp_path / "whole").run)
+    unfinished(drops, tmp_path / "runs")
+    found, said = resumed(drops, tmp_path / "runs")
+    assert said[1:] == ["3 run again: failed: diverged, broke a bound or lost its process"]
     assert contents(found) == whole
 
 

@@ -14,6 +14,7 @@ from lavendersim.runner.run_index import (
     drop_cut_line,
     ended_rows,
     kept_lines,
+    logs_closed,
     note_ended,
 )
 from lavendersim.trace import LogDigest
@@ -38,6 +39,12 @@ def test_the_last_line_about_a_log_counts(tmp_path: Path) -> None:
         "a.mcap": "complete",
         "b.mcap": "complete",
     }
+
+
+def test_cells_that_a_signal_ended_have_not_ended_by_themselves(tmp_path: Path) -> None:
+    for name, status in (("a", "complete"), ("b", "interrupted by SIGINT"), ("c", "diverged")):
+        note_ended(tmp_path / "cells" / name, status, DIGEST)
+    assert logs_closed(tmp_path) == {"a", "c"}
 
 
 def test_without_a_file_none_has_ended(tmp_path: Path) -> None:
