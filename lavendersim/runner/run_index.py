@@ -16,8 +16,6 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from lavendersim.trace.whole import INTERRUPTED
-
 if TYPE_CHECKING:
     from lavendersim.trace import LogDigest
 
@@ -69,6 +67,8 @@ def ended_rows(directory: Path) -> dict[str, dict[str, Any]]:
 
 def logs_closed(directory: Path) -> set[str]:
     """Return the names of the logs of cells that ended by themselves, measured or not."""
+    from lavendersim.trace.whole import INTERRUPTED  # late, as is all of the trace
+
     rows = ended_rows(directory)
     return {name for name, row in rows.items() if not row["status"].startswith(INTERRUPTED)}
 
