@@ -9,9 +9,6 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple, get_args
 
@@ -26,7 +23,7 @@ from .matrix_entry import DIED, REFUSED, Entry, entry_of, with_counts, without_r
 from .run_directory import RUNS
 from .solver_cases import about_something_else
 from .step_counts import counts_of
-from .workers import end_with_parent
+from .workers import Death, work
 
 ALL = "all"
 
@@ -122,50 +119,12 @@ def entries(
     """
     for solver in solvers:
         # a process for each solver holds its kernels and no others
-        yield from _made([CaseAndSolver(case, solver, root) for case in cases], jobs, make)
-
-
-def _pool(jobs: int) -> ProcessPoolExecutor:
-    return ProcessPoolExecutor(jobs, get_context("spawn"), initializer=end_with_parent)
-
-
-def _made(
-    pairs: list[CaseAndSolver], jobs: int, make: Callable[[CaseAndSolver], Entry]
-) -> Iterator[Entry]:
-    lost: list[CaseAndSolver] = []
-    with _pool(jobs) as pool:
-        waiting = list(reversed(pairs))
-        running: dict[Future[Entry], CaseAndSolver] = {}
-        while waiting or running:
-            while waiting and len(running) < jobs:
-                pair = waiting.pop()
-                try:
-                    running[pool.submit(make, pair)] = pair
-                except BrokenProcessPool:  # it broke between two entries
-                    lost.append(pair)
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                pair = running.pop(future)
-                try:
-                    yield future.result()
-                except BrokenProcessPool:
-                    lost.append(pair)
-            if lost:
-                lost += running.values()
-                break
-    if not lost:
-        return
-    for pair in lost:  # each alone tells which of them it was
-        yield from _made_alone(pair, make)
-    yield from _made(list(reversed(waiting)), jobs, make)
-
-
-def _made_alone(pair: CaseAndSolver, make: Callable[[CaseAndSolver], Entry]) -> Iterator[Entry]:
-    with _pool(1) as pool:
-        try:
-            yield pool.submit(make, pair).result()
-        except BrokenProcessPool:
-            reason = "its process ended without a word"
-            yield without_run(pair.case.name, pair.solver, DIED, reason)
+        pairs = [CaseAndSolver(case, solver, root) for case in cases]
+        for pair, made in work(make, pairs, jobs):
+            if isinstance(made, Death):
+                yield without_run(pair.case.name, pair.solver, DIED, f"its process {made.how}")
+            else:
+                yield made
 
 
 def _name(path: Path) -> str:

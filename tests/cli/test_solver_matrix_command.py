@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import subprocess
+import sys
+import time
 from pathlib import Path
 from urllib.parse import unquote
 
+import psutil
 import pytest
 from command_line import lavender
 from page_reader import Page, opened_in_a_browser
 
+WITHIN = 30.0  # [s], of a machine that does much besides
 SOLVERS = ("block_gauss_seidel", "projected_gauss_seidel")
 # At rest on the floor: any solver holds it, in one sweep.
 REST = """\
@@ -162,3 +168,35 @@ def test_what_cannot_be_asked_is_refused_in_a_sentence(
     done = lavender("check", *arguments, where=folder)
     errors = [line for line in done.stderr.splitlines(keepends=True) if "warning:" not in line]
     assert (done.returncode, done.stdout, "".join(errors)) == (2, "", said)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of a terminal are Unix's")
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_ctrl_c_twice_ends_every_process_of_a_matrix(tmp_path: Path, jobs: int) -> None:
+    """A terminal sends it to all of them; who holds the key sends it again."""
+    long = tmp_path / "long.yaml"
+    long.write_text(REST.replace("duration: 0.1", "duration: 2e4"))
+    words = ["check", long, "--solver", ",".join(SOLVERS), "--jobs", jobs, "--runs", "runs"]
+    started = subprocess.Popen(
+        [sys.executable, "-m", "lavender_cli.main", *map(str, words)],
+        cwd=tmp_path,
+        start_new_session=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    begin = time.monotonic()
+    while not [*tmp_path.glob("runs/*/cells/*")]:
+        assert time.monotonic() < begin + 4.0 * WITHIN
+        assert started.poll() is None
+        time.sleep(0.01)
+    children = psutil.Process(started.pid).children(recursive=True)
+    for _ in range(2):
+        os.killpg(started.pid, signal.SIGINT)
+        time.sleep(0.05)
+    started.communicate(timeout=WITHIN)
+    assert started.returncode == 130
+    gone, alive = psutil.wait_procs(children, WITHIN)
+    for left in alive:
+        left.kill()
+    assert gone
+    assert alive == []
