@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import shutil
 import signal
 import sys
@@ -19,6 +20,9 @@ if sys.platform == "win32":
 import pty
 
 QUESTION = b"Remove 1 run, "
+# [s] without a word, after which the key is pressed again: its meaning is lost where it comes while
+# the terminal passes from lines to single characters.
+AGAIN = 10.0
 
 
 @pytest.fixture(scope="module")
@@ -46,6 +50,8 @@ def on_terminal(runs: Path, answer: bytes, *options: str) -> tuple[int, str]:
         os.execv(sys.executable, [sys.executable, *words])
     said, asked = b"", False
     while True:
+        if asked and not select.select([terminal], [], [], AGAIN)[0]:
+            os.write(terminal, answer)
         try:
             part = os.read(terminal, 4096)
         except OSError:  # the other end is closed
