@@ -1,11 +1,11 @@
 """A row of dominoes falls as fast as energy and impacts say.
 
-Feet do not slide and faces do not rub: domino k has turned by theta_k about its front foot, and
-leans with its upper edge on the next one,
+Feet do not slide and faces have no friction: domino k has turned by theta_k about its front foot,
+and leans with its upper edge on the next one,
     h sin(theta_k - theta_k+1) = p cos(theta_k+1) - d,        p: pitch, d: thickness, h: height
-so all that have been struck move as one. Between impacts their energy is kept; as the foremost
-strikes the next one, e = 0, momentum is: of their velocities the part stays that the contacts
-allow, in the metric of the kinetic energy. All forces push, so nothing parts.
+so all that have been hit move as one. Between impacts their energy is kept; as the foremost hits
+the next one, e = 0, momentum is: of their velocities the part stays that the contacts allow, in the
+metric of the kinetic energy. All forces push, so nothing parts.
 """
 
 from __future__ import annotations
@@ -46,16 +46,16 @@ def begins(gap: float, count: int) -> np.ndarray:
     """Return when each domino has turned by FOUND [s], by energy and impacts."""
     turned = np.linspace(0.0, np.arcsin(gap / TALL), POINTS)
     own = (TALL * TALL + THICK * THICK) / 3.0  # about the foot, of mass 1
-    spin, struck, times = PUSHED, 0.0, []
+    spin, begun, times = PUSHED, 0.0, []
     for behind in range(count):
         inertia, height = moved(gap, behind, turned)
         energy = 0.5 * own * inertia[0] * spin * spin + GRAVITY * height[0]
         spins = np.sqrt(2.0 * (energy - GRAVITY * height) / (own * inertia))
         slowness = 1.0 / spins
         steps = 0.5 * (slowness[1:] + slowness[:-1]) * np.diff(turned)
-        time = struck + np.concatenate([[0.0], np.cumsum(steps)])
+        time = begun + np.concatenate([[0.0], np.cumsum(steps)])
         times.append(np.interp(FOUND, turned, time))
-        struck = time[-1]
+        begun = time[-1]
         # Next to the upright one the foremost turns as fast as that.
         spin = spins[-1] * inertia[-1] / (inertia[-1] + 1.0)
     return np.array(times)
