@@ -20,6 +20,7 @@ from .row_terms import make_acts, row_terms
 from .spec import Spec
 from .spring_turn import BOTH, PLACED, make_twist
 from .step_terms import step_terms
+from .vectors import Vec3
 
 # MOTION.carried: a contact carries the body from its impact on, or through the whole step.
 AFTERWARDS = 1
@@ -318,9 +319,12 @@ def make_displace(spec: Spec) -> Any:
                     if lasting:
                         return turn_in_halves(body, v, m, dt)
                     return integrate_rotation(body, v, dt)
-                # Impulses changed its spin at the middle, and so its turn.
+                # Impulses changed its spin at the middle, and so its turn. What jumps turns as its
+                # contacts reckon, with the spin after them.
+                mean = Vec3(m.mean_x, m.mean_y, m.mean_z)
+                spin = mean if lasting else Vec3(v.wx, v.wy, v.wz)
                 v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
-                turn_by_mean(body, v, m.mean_x, m.mean_y, m.mean_z, dt)
+                turn_by_mean(body, v, mean, spin, dt)
                 return True
         if springs:
             if sprung and body.sprung == PLACED:

@@ -130,16 +130,17 @@ def make_turn_midway(spec):
 
 
 def make_turn_by_mean(spec):
-    """Return `kernel(body, velocity, x, y, z, dt)`: turn with the mean spin of the step.
+    """Return `kernel(body, velocity, mean, spin, dt)`: turn with a spin of the step's middle.
 
-    velocity: spin at its start, replaced by that at its end: in body axes 2 omega_m - omega_0.
+    velocity: spin at its start, replaced by that at its end: in body axes 2 omega_m - omega_0, of
+    the mean. spin: what it turns with, which is the mean where no contact makes it jump.
     """
     from ..rotation import to_body, to_world, turn
 
-    def turn_by_mean(body, velocity, x, y, z, dt):
+    def turn_by_mean(body, velocity, mean, spin, dt):
         ax, ay, az = to_body(body, velocity.wx, velocity.wy, velocity.wz)
-        bx, by, bz = to_body(body, x, y, z)
-        turn(body, x * dt, y * dt, z * dt)
+        bx, by, bz = to_body(body, mean.x, mean.y, mean.z)
+        turn(body, spin.x * dt, spin.y * dt, spin.z * dt)
         velocity.wx, velocity.wy, velocity.wz = to_world(
             body, 2.0 * bx - ax, 2.0 * by - ay, 2.0 * bz - az
         )

@@ -147,15 +147,19 @@ def test_what_lasts_moves_and_turns_by_the_mean_of_both_ends(rng) -> None:
     np.testing.assert_allclose(body.angle(), 0.5 * DT * (w + spin), atol=1e-14)
 
 
-def test_an_uneven_body_turns_by_the_mean_spin_that_its_middle_had(rng) -> None:
-    """The spin at the end is the mean's other side, in axes of the body: 2 w_m - w_0."""
-    v, after, w, mean = rng.normal(size=(4, 3))
-    body = Body(CENTRED, rng, (0.5, 1.0, 1.3)).gives(
-        m_v=v, v=after, m_w=w, w=(9, 9, 9), m_mean_=mean
-    )
-    body.motion["carried"], body.motion["midway"] = ALWAYS, 1
-    np.testing.assert_allclose(body.moved(CENTRED), DT * after, atol=1e-15)
-    np.testing.assert_allclose(body.angle(), DT * mean, atol=1e-14)
+@pytest.mark.parametrize("carried", [LASTING, ALWAYS])
+def test_an_uneven_body_turns_as_its_contacts_at_the_middle_reckon(carried: int, rng) -> None:
+    """By the mean of both ends' spins, or of what jumps by the last, as it moves.
+
+    The spin at the end is the mean's other side, in axes of the body: 2 w_m - w_0.
+    """
+    v, after, w, spin, mean = rng.normal(size=(5, 3))
+    body = Body(CENTRED, rng, (0.5, 1.0, 1.3)).gives(m_v=v, v=after, m_w=w, w=spin, m_mean_=mean)
+    body.motion["carried"], body.motion["midway"] = carried, 1
+    lasts = carried == LASTING
+    moved = DT * (0.5 * (v + after) if lasts else after)
+    np.testing.assert_allclose(body.moved(CENTRED), moved, atol=1e-15)
+    np.testing.assert_allclose(body.angle(), DT * (mean if lasts else spin), atol=1e-14)
     expected = body.turn() @ body.frame.T @ (2.0 * mean - w)
     np.testing.assert_allclose(body.spin(), expected, atol=1e-13)
 

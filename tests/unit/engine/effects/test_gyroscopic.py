@@ -11,6 +11,7 @@ from plain_facts import body_facts, facts, one_row, pair_facts, vector_fields
 from lavendersim.engine.effects import gyroscopic
 from lavendersim.engine.effects.gyroscopic import EFFECT
 from lavendersim.engine.spec import Spec
+from lavendersim.engine.vectors import Vec3
 
 INERTIA = np.array([0.2, 0.5, 0.6])
 
@@ -93,12 +94,18 @@ def test_newton_doubles_its_digits(rng, monkeypatch) -> None:
 
 
 def test_a_turn_by_the_mean_ends_with_twice_the_mean_less_the_start_in_body_axes(rng) -> None:
-    one, mean = Spinning(rng), rng.normal(size=3)
-    before, matrix = one.matrix.T @ one.omega, one.matrix
+    """Whatever it turns with, which is the mean but for a body that jumps."""
     kernel = interpreted(gyroscopic.make_turn_by_mean(Spec()))
-    kernel(one.body, one.velocity, *mean, 0.1)
-    np.testing.assert_allclose(one.matrix.T @ one.omega, 2.0 * matrix.T @ mean - before, atol=1e-14)
-    assert not np.allclose(one.matrix, matrix)
+    for jumps in (False, True):
+        one, mean = Spinning(rng), rng.normal(size=3)
+        spin = rng.normal(size=3) if jumps else mean
+        before, matrix = one.matrix.T @ one.omega, one.matrix
+        kernel(one.body, one.velocity, Vec3(*mean), Vec3(*spin), 0.1)
+        expected = 2.0 * matrix.T @ mean - before
+        np.testing.assert_allclose(one.matrix.T @ one.omega, expected, atol=1e-14)
+        # Turned about the spin, which alone stays where it was.
+        np.testing.assert_allclose(one.matrix @ matrix.T @ spin, spin, atol=1e-14)
+        assert not np.allclose(one.matrix, matrix)
 
 
 def test_a_jump_changes_the_energy_by_what_the_solver_counts_on(rng) -> None:
