@@ -12,14 +12,16 @@ from typing import Any
 from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import UNBOUNDED, put_normal
+from .collide.shapes import shapes_in
 from .compile import inner, kernel
 from .effects import made_once
 from .joint_turn import put_mean_ends
-from .records import BOX, HULL, PLANE, ROPE, TOUCHING
+from .records import BOX, CYLINDER, HULL, PLANE, ROPE, TOUCHING
 from .rotation import half_turn, is_round
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
+from .vectors import length, minus, position
 
 # Contacts are looked for at the middle up to this share of a body's size apart.
 APART = 0.1
@@ -27,6 +29,11 @@ APART = 0.1
 NEAR = 0.02
 # Least cosine of a contact's normal at the middle and at the start, if its feature is another.
 AGREES = 0.5
+# The points of a cap that lies are named from where it tilts to. One that is farther than this
+# share of the radius from its place has the name of another: the cap has tilted to another side.
+TILTED = 0.5
+# Contacts of a pair from which on a cap lies; less are a rim that rolls.
+LYING = 3
 
 
 def make_stand_midway(spec: Spec) -> Any:
@@ -73,6 +80,23 @@ def make_stand_midway(spec: Spec) -> Any:
 def has_flat_faces(body):
     """Whether all its faces are flat: what is round leaves a face along that face's plane."""
     return body.shape == BOX or body.shape == HULL
+
+
+@inner
+def radius_of_cap(a, b):
+    """Radius of the smaller cylinder of a pair, unbounded where there is none [m]."""
+    radius = UNBOUNDED
+    if a.shape == CYLINDER:
+        radius = a.hx
+    if b.shape == CYLINDER:
+        radius = min(radius, b.hx)
+    return radius
+
+
+@inner
+def is_beyond(contact, point, reach):
+    """Whether a point is farther than `reach` from where a contact was carried to."""
+    return length(minus(position(point), position(contact))) > reach
 
 
 def make_nearest(spec: Spec) -> Any:
@@ -141,6 +165,7 @@ def make_look(spec: Spec) -> Any:
     overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
     marks, mark_middle = made_once(spec, "mark_middle")
     arms = row_terms(spec).bilateral and row_terms(spec).levers
+    caps = any(shape.kind == CYLINDER for shape in shapes_in(spec))
 
     def look(state, count, poses, workspace):
         bodies, contacts = state.bodies, state.contacts
@@ -169,6 +194,10 @@ def make_look(spec: Spec) -> Any:
             if not passes_on:  # beyond a seam is another's face, not its edge
                 found = manifold(row.kind, a, b, margin + APART * size, scratch)
             persists, flat = False, has_flat_faces(a) and has_flat_faces(b)
+            reach = UNBOUNDED
+            if caps:
+                if last - first >= LYING:
+                    reach = TILTED * radius_of_cap(a, b)
             for c in range(first, last):
                 for k in range(found):
                     persists = persists or points[k].feature == contacts[c].feature
@@ -179,6 +208,9 @@ def make_look(spec: Spec) -> Any:
                 for k in range(found):
                     if points[k].feature == contact.feature:
                         best = k
+                if caps:
+                    if best >= 0 and is_beyond(contact, points[best], reach):
+                        best = -1
                 if best < 0 and flat and found > 0:
                     if persists:
                         rows = first, last

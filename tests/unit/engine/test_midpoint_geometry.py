@@ -15,7 +15,7 @@ from interpreted import interpreted, records
 from lavendersim.engine import midpoint_geometry
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.scratch import allocate_scratch
-from lavendersim.engine.midpoint_geometry import AGREES, APART, NEAR
+from lavendersim.engine.midpoint_geometry import AGREES, APART, NEAR, TILTED
 from lavendersim.engine.record_layout import (
     allocate_bodies,
     allocate_pairs,
@@ -265,6 +265,31 @@ def test_a_normal_that_has_turned_away_is_another_contact(rng) -> None:
         put_vector(contact[0], "at_n", cosine * frame[0] + np.sqrt(1.0 - cosine**2) * frame[2])
         assert nearest(records(contact)[0], manifold, 3) == (-1 if turned else 1)
     assert nearest(records(contact)[0], manifold, 0) == -1
+
+
+def tilted_disc(angle: float) -> np.ndarray:
+    """Turned by a hair about an axis of the floor at an angle from x: its lowest point is aside."""
+    about_z, hair = np.eye(3), tilted(0.01, 0)
+    about_z[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+    return about_z @ hair @ about_z.T
+
+
+@pytest.mark.parametrize("turned", [0.2, 1.0, np.pi])
+def test_a_cap_that_tilts_to_another_side_keeps_its_contacts_where_they_were(turned: float) -> None:
+    """Its points are named from where it tilts to: a name may stand for another place.
+
+    0.2 rad along the rim are 0.2 radii, and the point of the name; 1 rad is beyond TILTED.
+    """
+    spec, radius = Spec(EFFECTS, ("cylinder_plane",)), 0.1
+    disc = {"kind": "cylinder", "half": (radius, radius, 0.005), "centre": (0.0, 0.0, 0.00497)}
+    scene = Touching("cylinder_plane", FLOOR, disc | {"matrix": tilted_disc(0.0)}, spec)
+    before = np.array([vector(row) for row in scene.contacts])
+    assert len(before) == 4
+    scene.moves(1, (0.0, 0.0, 0.0), tilted_disc(turned))
+    moved = [np.linalg.norm(vector(row) - at) for row, at in zip(scene.look(), before, strict=True)]
+    # A chord of the rim; the tilt itself is 1.7e-4 rad.
+    expected = 2.0 * radius * np.sin(0.5 * turned) if turned < TILTED else 0.0
+    np.testing.assert_allclose(moved, expected, atol=1e-3 * radius)
 
 
 def test_round_bodies_that_lose_a_feature_keep_their_contact() -> None:
