@@ -147,16 +147,26 @@ def make_begin_slip(spec: Spec) -> Any:
     """Return `kernel(contacts, count, velocities, motion) -> whether the slip turns`.
 
     Of rows solved at the start: their slip then, and whether it counts in the mean: where they
-    slide throughout, or where friction would else do work on it. None without friction.
+    slide throughout, or where friction would else do work on it, that of all rows of a pair: of
+    those that stick alone it is only the sum that statics tells. None without friction.
     """
     if not row_terms(spec).frictional:
         return None
     relative_velocity, stretched = make_relative_velocity(spec), row_terms(spec).stretched
 
+    def work_on_slip(contact):
+        x, y, z = contact.begin_x, contact.begin_y, contact.begin_z
+        one = contact.lambda_1 * (contact.t1x * x + contact.t1y * y + contact.t1z * z)
+        return one + contact.lambda_2 * (contact.t2x * x + contact.t2y * y + contact.t2z * z)
+
+    work_on_slip = kernel(work_on_slip, spec)
+
     def begin_slip(contacts, count, velocities, motion):
-        turned = False
+        turned, first, work = False, 0, 0.0
         for c in range(count):
             contact = contacts[c]
+            if contact.pair != contacts[first].pair:
+                first, work = c, 0.0
             x, y, z = relative_velocity(contact, motion[contact.a], motion[contact.b])
             v = relative_velocity(contact, velocities[contact.a], velocities[contact.b])
             dx, dy, dz = v[0] - x, v[1] - y, v[2] - z
@@ -170,16 +180,18 @@ def make_begin_slip(spec: Spec) -> Any:
             slip, change = sqrt(x * x + y * y + z * z), sqrt(dx * dx + dy * dy + dz * dz)
             contact.slides = 1 if slip > SLIDES * change else 0
             if contact.slides == 0:
-                along = contact.lambda_1 * (contact.t1x * x + contact.t1y * y + contact.t1z * z)
-                along += contact.lambda_2 * (contact.t2x * x + contact.t2y * y + contact.t2z * z)
-                if along > 0.0:
-                    contact.slides = 1
+                work += work_on_slip(contact)
             elif contact.lambda_n > 0.0:
                 across_x, across_y = y * dz - z * dy, z * dx - x * dz
                 across_z = x * dy - y * dx
                 across = sqrt(across_x * across_x + across_y * across_y + across_z * across_z)
                 if across > SAME * slip:
                     turned = True
+            is_last = c + 1 == count or contacts[c + 1].pair != contact.pair
+            if is_last and work > 0.0:
+                for k in range(first, c + 1):
+                    if contacts[k].slides == 0 and work_on_slip(contacts[k]) > 0.0:
+                        contacts[k].slides = 1
         return turned
 
     return kernel(begin_slip, spec)
@@ -213,9 +225,9 @@ def make_resist(spec: Spec) -> Any:
     """Return `kernel(contacts, count, velocities) -> whether a row more slides in the mean`.
 
     Of rows solved at the middle. Where friction has turned since the solve at the start it may push
-    along the slip that the step began with, and would do work on the mean: lambda_t . (w + s_0)/2.
-    There that slip counts, too, as in `begin_slip`; not of what is driven, which does work on what
-    rides on it. None without friction.
+    along the slip that the step began with, and the rows of a pair would do work on the mean:
+    lambda_t . (w + s_0)/2. There that slip counts, too, as in `begin_slip`; not of what is driven,
+    which does work on what rides on it. None without friction.
     """
     if not row_terms(spec).frictional:
         return None
@@ -229,23 +241,38 @@ def make_resist(spec: Spec) -> Any:
 
     is_driven = kernel(is_driven, spec)
 
+    def work_on_mean(contact, velocities):
+        # lambda_t . (w + s_0) of a row, and what of it is round-off.
+        one, two = contact.lambda_1, contact.lambda_2
+        _, v_1, v_2 = slip_velocity(contact, velocities[contact.a], velocities[contact.b])
+        x, y, z = contact.begin_x, contact.begin_y, contact.begin_z
+        s_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
+        s_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
+        return one * (v_1 + s_1) + two * (v_2 + s_2), SAME * sqrt(one * one + two * two)
+
+    work_on_mean = kernel(work_on_mean, spec)
+
     def resist(contacts, count, velocities):
-        more = False
+        more, first, work, least = False, 0, 0.0, 0.0
         for c in range(count):
             contact = contacts[c]
-            if contact.lasts == 0 or contact.slides != 0 or contact.lambda_n == 0.0:
-                continue
+            if contact.pair != contacts[first].pair:
+                first, work, least = c, 0.0, 0.0
             va, vb = velocities[contact.a], velocities[contact.b]
+            sticks = contact.lasts == 1 and contact.slides == 0 and contact.lambda_n != 0.0
             if is_driven(contact.inv_m_a, va) or is_driven(contact.inv_m_b, vb):
                 continue
-            one, two = contact.lambda_1, contact.lambda_2
-            _, v_1, v_2 = slip_velocity(contact, va, vb)
-            x, y, z = contact.begin_x, contact.begin_y, contact.begin_z
-            s_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z
-            s_2 = contact.t2x * x + contact.t2y * y + contact.t2z * z
-            push = sqrt(one * one + two * two)
-            if one * (v_1 + s_1) + two * (v_2 + s_2) > SAME * push:
-                contact.slides, more = 1, True
+            if sticks:
+                own, rounding = work_on_mean(contact, velocities)
+                work, least = work + own, least + rounding
+            is_last = c + 1 == count or contacts[c + 1].pair != contact.pair
+            if is_last and work > least:
+                for k in range(first, c + 1):
+                    row = contacts[k]
+                    if row.lasts == 1 and row.slides == 0 and row.lambda_n != 0.0:
+                        own, rounding = work_on_mean(row, velocities)
+                        if own > rounding:
+                            row.slides, more = 1, True
         return more
 
     return kernel(resist, spec)
