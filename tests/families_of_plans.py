@@ -72,7 +72,7 @@ FAMILIES = (
     Family(("scenes/free_rotation",)),
     Family(("time/ball_on_ball", "scenes/bullet", "time/corner_of_three_walls")),
     Family(("chapter/timestep_and_compliance", "paw_check/two_movable_masses")),
-    Family(("scenes/pile", "scenes/pyramid")),
+    Family(("scenes/pile", "scenes/pyramid", "hard/crowd/pile_of_2000")),
     Family(
         (
             *("time/turntable", "time/ball_on_turntable", "time/slope", "time/disc_that_nods"),

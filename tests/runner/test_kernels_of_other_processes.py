@@ -65,10 +65,13 @@ def test_two_plans_compiled_apart_and_loaded_together_give_what_each_gives_alone
         write(tmp_path, HEAVY.format(resistance=name) + SHORT, f"{name}.yaml")
         for name in RESISTANCES
     ]
-    alone = [hashes(config)[0] for config in configs]
+    # Where no kernel is kept, the first of two in a process was compiled and run before the other:
+    # as if it were alone.
+    apart = configs if Kernel is not None else configs[1:]
+    alone = [hashes(config)[0] for config in apart]
     together = hashes(*configs)
-    assert together == alone
-    assert len(set(alone)) == 2
+    assert together[-len(alone) :] == alone
+    assert len(set(together)) == 2
 
 
 # Kernels of one name that scale by the numbers in argv, each optimised by itself. Prints what each

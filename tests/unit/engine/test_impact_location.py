@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import numpy as np
 
-from lavendersim import Simulator
+from lavendersim.engine.records import DIVERGED
+from lavendersim.experiment import load_experiment_text
+from lavendersim.scene.build import build
+from lavendersim.scene.plan import plan_of_cell
+from tests.families_of_plans import spec_of_family
 
 # Its rim lands at a speed at which it rebounds by 0.016 m/s from 18 um inside, and does not get out
 # of there in the step: 0.0156^2/(2 g) = 12 um.
@@ -27,18 +31,17 @@ duration: 0.125
 MOST = 64
 
 
-def test_a_point_that_overlaps_and_parts_is_not_met_again_and_again(tmp_path: Path) -> None:
+def test_a_point_that_overlaps_and_parts_is_not_met_again_and_again() -> None:
     """A part that ends as it begins, 2e-12 s long, was made until the work of the step was spent:
     257 parts, and the rest of the step without order.
     """
-    file = tmp_path / "plate.yaml"
-    file.write_text(PLATE)
-    simulator = Simulator(file)
-    simulator.reset()
-    parts, ends = [], False
-    while not ends:
-        _, _, ended, truncated, after = simulator.step()
-        ends = ended or truncated
-        parts.append(after["parts"])
+    cell = load_experiment_text(PLATE, "plate.yaml").cells()[0]
+    spec = spec_of_family(plan_of_cell(cell))
+    engine = build(cell.config, spec).engine(spec)
+    rows = []
+    while engine.counters["step"][0] < cell.config.steps:
+        assert engine.advance(1) != DIVERGED
+        rows.append(engine.take_rows().step["parts"])
+    _, *parts = np.concatenate(rows)  # the state before the first step is a row, too
     assert len(parts) == 30
     assert max(parts) < MOST
