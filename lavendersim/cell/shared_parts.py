@@ -48,10 +48,19 @@ def _made(one: _Equal, make: Callable[[Any], Any]) -> Any:
     return make(one.part)
 
 
+# By the id of a part, which cannot be another's while the part stands here, and what makes of it.
+_made_of: dict[tuple[int, Callable[[Any], Any]], tuple[object, Any]] = {}
+
+
 def made_once(source: Source, make: Callable[[Source], Part]) -> Part:
     """Return what is made of a part of a config as written: once for all that are equal.
 
     make: a function of a module, of the part's fields alone.
     """
-    made: Part = _made(_Equal(source), make)
+    known = _made_of.get((id(source), make))
+    if known is None:
+        if len(_made_of) >= KEPT:
+            _made_of.clear()
+        known = _made_of[id(source), make] = source, _made(_Equal(source), make)
+    made: Part = known[1]
     return made

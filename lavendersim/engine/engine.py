@@ -53,7 +53,8 @@ class Rows(NamedTuple):
 # Bits of numpy's flags that numba tells arrays apart by: whether rows stand behind each other, may
 # be written, are aligned.
 _FLAGS = 0x0001 | 0x0400 | 0x0100
-# Engines of one spec and of equal types of arrays have one machine code: a kind, by its number.
+# Engines of one spec and of equal types of what they are given have arrays of equal types, so one
+# machine code: a kind, by its number.
 _kinds: dict[Any, int] = {}
 # Machine code by kind, where it is known: as Python calls it, and where it lies for other kernels.
 _entries: dict[int, Any] = {}
@@ -119,8 +120,10 @@ class Engine:
         self.workspace = memory.allocate_workspace(spec, self.state, hulls, templates)
         self.log = self._allocate_log()
         # Looking up the types of forty arrays costs 6 us a call, and 1 ms for the first of an
-        # engine; they stay what they are, and are the same in another engine of the scene's plan.
-        types = spec, _types_of((self.state, self.workspace, self.log))
+        # engine; they stay what they are. Of what is allocated here, they follow from the spec and
+        # from the types of what is given: engines of one kind differ in sizes alone.
+        given = bodies, velocities, pairs, parameters, poses, links, drives, triggers
+        types = spec, _types_of((*given, hulls, templates))
         self.kind = _kinds.setdefault(types, len(_kinds))
         self._entry = _entries.get(self.kind)
         self._objects: tuple[Any, np.ndarray] = (), np.empty(0, np.int64)

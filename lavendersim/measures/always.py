@@ -73,8 +73,9 @@ class WorstStates:
         if first >= end:
             return
         numbers = one.numbers[first:end]
-        known = self._found.get(one.check, _Worst(one.bound, one.unit))
-        known = known._replace(number=float(np.max(numbers, initial=known.number)))
+        known = self._found.get(one.check) or _Worst(one.bound, one.unit)
+        largest = float(numbers.max(initial=known.number))
+        known = _Worst(known.bound, known.unit, largest, known.first, known.time)
         if not known.first and not known.number <= one.bound:
             row = int(np.flatnonzero(~(numbers <= one.bound))[0]) + first
             time = time_of(section.step, row)

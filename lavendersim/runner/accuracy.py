@@ -42,7 +42,7 @@ class Accuracy(NamedTuple):
         missed = self.not_converged or 0
         if self.tolerance is not None:
             missed += int(np.count_nonzero(step["not_converged"]))
-        worst = np.max(step["residual"], initial=self.worst_residual)
+        worst = step["residual"].max(initial=self.worst_residual)
         return self._replace(
             worst_residual=float(worst),
             not_converged=missed,
@@ -53,7 +53,7 @@ class Accuracy(NamedTuple):
     def _at_limit(self, step: np.ndarray) -> Mapping[str, int]:
         found = dict(self.at_limit)
         for column in AT_LIMIT:
-            if column in (step.dtype.names or ()) and (count := int(np.sum(step[column]))):
+            if column in (step.dtype.names or ()) and (count := int(step[column].sum())):
                 found[column] = found.get(column, 0) + count
         return found
 

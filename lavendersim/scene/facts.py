@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import hypot
+from typing import Final
 
 from lavendersim.cell import (
     CellConfig,
@@ -29,6 +30,9 @@ from .joints import facts_of_joints, joined_bodies
 from .ropes import facts_of_ropes
 from .stages import later_forms, stages_of
 
+ACTING: Final = tuple(effect.acts_on for effect in EFFECTS if effect.acts_on)
+MOVING: Final = tuple(effect.moves for effect in EFFECTS if effect.moves)
+
 
 def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
     events: dict[str, list[CellEvent]] = {}
@@ -37,9 +41,8 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
     pushed = {force.body for force in config.scene.forces if any(force.force)}
     twisted = {force.body for force in config.scene.forces if any(force.torque)}
     levers = {force.body for force in config.scene.forces if any(force.point)}
-    acting = [one for effect in EFFECTS if effect.acts_on for one in effect.acts_on(config.scene)]
+    acting = [one for acts_on in ACTING for one in acts_on(config.scene)]
     pulled = {name for name, _ in acting}
-    moving = [effect.moves for effect in EFFECTS if effect.moves]
     turned = levers | {name for name, turns in acting if turns}
     turned |= {*turned_by_ropes(config.scene), *turned_by_joints(config.scene)}
     later = later_forms(config)
@@ -48,7 +51,7 @@ def _body_facts(config: CellConfig) -> Iterator[BodyFacts]:
         own = events.get(name, ())
         speeds = [body.velocity, *(event.velocity or () for event in own)]
         spins = [body.angular_velocity, *(event.angular_velocity or () for event in own)]
-        driven = [moves(body) for moves in moving]
+        driven = [moves(body) for moves in MOVING]
         yield BodyFacts(
             name=name,
             shape=body.shape.kind,

@@ -53,11 +53,11 @@ def _starts(steps: Rows, owners: Rows, what: str) -> NDArray[np.int64]:
     if not len(owners):
         return starts
     owners = np.ascontiguousarray(owners)  # of every row one number, read more than once
-    starts[1:] = np.searchsorted(owners, steps, "right")
+    starts[1:] = owners.searchsorted(steps, "right")
     # Of owners in another order the counts may be below 0, or of other steps.
-    counts = np.diff(starts)
+    counts = starts[1:] - starts[:-1]
     ordered = starts[-1] == len(owners) and counts.min() >= 0
-    if not (ordered and np.array_equal(np.repeat(steps, counts), owners)):
+    if not (ordered and (steps.repeat(counts) == owners).all()):
         raise ValueError(f"{what} of a block are not grouped by its steps")
     return starts
 
@@ -65,5 +65,5 @@ def _starts(steps: Rows, owners: Rows, what: str) -> NDArray[np.int64]:
 def cumulative(sizes: Rows) -> NDArray[np.int64]:
     """Return where each of these begins, and where the last ends (n + 1,)."""
     starts = np.zeros(len(sizes) + 1, np.int64)
-    np.cumsum(sizes, out=starts[1:])
+    sizes.cumsum(out=starts[1:])
     return starts

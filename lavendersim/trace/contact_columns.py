@@ -184,7 +184,7 @@ def pack(
         if predictor == SPHERES and spheres is not None:
             expected[place] = spheres.columns[name].view(np.uint64)
         else:
-            sources = np.array([columns.index(one) for one in SPECIAL[name][1]], np.int64)
+            sources = _sources(name, columns)
             predictors.expect(predictor, (words, sources, persists), constants, expected[place])
     known = np.zeros(count, bool) if spheres is None else spheres.known
     chosen = np.zeros(len(columns), np.int64)
@@ -193,14 +193,15 @@ def pack(
     packed = chosen, planes, np.empty(PART, np.uint64)
     pack_columns()(words, (persists, known), special, expected, size, packed)
     bodies = b""
-    if starts is not None and SPHERES in chosen:
+    used = chosen.tolist()
+    if starts is not None and SPHERES in used:
         bodies = _with_positions(starts).astype("<f8").tobytes()
     differences = keys.copy()
     differences[:, 1:] -= keys[:, :-1]
     return Packed(
         differences.view(np.uint8).reshape(-1).data,
         planes.reshape(-1).data,
-        bytes(chosen.tolist()),
+        bytes(used),
         np.array(constants, "<f8").tobytes(),
         bodies,
     )
@@ -246,6 +247,12 @@ def _asked(
     special = [_special(name, columns, of_spheres) for name in columns]
     asked = tuple((name, code) for name, code in zip(columns, special, strict=True) if code)
     return np.array(special, np.int64), asked
+
+
+@lru_cache(maxsize=64)
+def _sources(name: str, columns: tuple[str, ...]) -> Integers:
+    """Return which of some columns the predictor of one needs that only this column has."""
+    return np.array([columns.index(one) for one in SPECIAL[name][1]], np.int64)
 
 
 def _special(name: str, columns: Sequence[str], of_spheres: bool) -> int:

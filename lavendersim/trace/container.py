@@ -100,6 +100,11 @@ def _metadata_record(name: str, values: tuple[tuple[str, str], ...]) -> bytes:
     return to_bytes(Metadata(name, {**entries, CRC_KEY: metadata_crc(name, entries)}))
 
 
+@lru_cache(maxsize=4)  # the cells of a sweep have one text as written
+def _attachment_record(name: str, media_type: str, data: bytes) -> bytes:
+    return to_bytes(Attachment(0, 0, name, media_type, data))
+
+
 class Registered(NamedTuple):
     """Schemas, and the channels that need them, as records."""
 
@@ -173,7 +178,7 @@ class Container:
 
     def attach(self, name: str, media_type: str, data: bytes) -> None:
         """Write an attachment; its times are 0, for no wall clock enters the file."""
-        record = to_bytes(Attachment(0, 0, name, media_type, data))
+        record = _attachment_record(name, media_type, data)
         entry = AttachmentIndex(self._offset, len(record), 0, 0, len(data), name, media_type)
         self.index.attachments.append(entry)
         self._write(record)

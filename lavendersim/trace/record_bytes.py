@@ -7,12 +7,14 @@ records that every log has many of, all numbers are packed at once (`_AT_ONCE`).
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Callable, Mapping
 from struct import Struct
 from typing import Any, Final
 
 from mcap.opcode import Opcode
 from mcap.records import (
+    Attachment,
     AttachmentIndex,
     Chunk,
     ChunkIndex,
@@ -96,6 +98,13 @@ def _chunk_index(one: ChunkIndex) -> list[bytes]:
     return [head + offsets + _EIGHT(one.message_index_length) + compression + sizes]
 
 
+def _attachment(one: Attachment) -> list[bytes]:
+    texts, size = _text(one.name) + _text(one.media_type), len(one.data)
+    content = _TWO_SIZES(one.log_time, one.create_time) + texts + _EIGHT(size)
+    crc = zlib.crc32(one.data, zlib.crc32(content))
+    return [_HEAD(Opcode.ATTACHMENT, len(content) + size + 4) + content, one.data, _FOUR(crc)]
+
+
 def _attachment_index(one: AttachmentIndex) -> list[bytes]:
     texts = _text(one.name) + _text(one.media_type)
     numbers = one.offset, one.length, one.log_time, one.create_time, one.data_size
@@ -136,6 +145,7 @@ def _footer(one: Footer) -> list[bytes]:
 _AT_ONCE: Final[Mapping[type[McapRecord], Callable[[Any], list[bytes]]]] = {
     Chunk: _chunk,
     ChunkIndex: _chunk_index,
+    Attachment: _attachment,
     AttachmentIndex: _attachment_index,
     MetadataIndex: _metadata_index,
     SummaryOffset: _summary_offset,

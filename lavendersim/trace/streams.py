@@ -103,7 +103,7 @@ class Light:
 
     def sizes(self, counted: Counted) -> Rows:
         """Return the bytes of each step [B] (n,)."""
-        swept = np.diff(counted.residual_start)
+        swept = _counts(counted.residual_start)
         heads = (swept > 0) * len(self._sweeps)
         sizes: Rows = len(self._light) + heads + swept * len(self._sweep)
         return sizes
@@ -112,7 +112,7 @@ class Light:
         """Return the rows of steps and of their sweeps, and how many each has."""
         start = counted.residual_start[first : last + 1]
         sweeps = counted.block.residual[start[0] : start[-1]]
-        return counted.block.step[first:last], sweeps, np.diff(start)
+        return counted.block.step[first:last], sweeps, _counts(start)
 
     def encode(self, prologue: bytes, parts: Sequence[Any], size: int) -> Laid:
         """Return the bytes of a chunk and its index."""
@@ -221,7 +221,7 @@ class Points:
 
     def sizes(self, counted: Counted) -> Rows:
         """Return the bytes of each step [B] (n,)."""
-        contacts = np.diff(counted.contact_start)
+        contacts = _counts(counted.contact_start)
         sizes: Rows = counted.touched * (len(self._cloud) + contacts * self.form.size)
         return sizes
 
@@ -265,7 +265,7 @@ class ContactColumns:
 
     def sizes(self, counted: Counted) -> Rows:
         """Return the bytes of each step before they are packed [B] (n,)."""
-        contacts = np.diff(counted.contact_start)
+        contacts = _counts(counted.contact_start)
         sizes: Rows = counted.touched * (STEP_OF_COLUMNS + contacts * WORD * len(self.form.names))
         return sizes
 
@@ -313,11 +313,17 @@ class ContactColumns:
 def _touched(counted: Counted, first: int, last: int) -> Touched:
     """Return the steps that have contacts recorded, with these."""
     step, start = counted.block.step[first:last], counted.contact_start[first : last + 1]
-    contacts, counts = counted.block.contact[start[0] : start[-1]], np.diff(start)
+    contacts, counts = counted.block.contact[start[0] : start[-1]], _counts(start)
     touched = counted.touched[first:last]
     if touched.all():
         return Touched(step, contacts, counts)
     return Touched(step[touched], contacts[np.repeat(touched, counts)], counts[touched])
+
+
+def _counts(starts: Rows) -> Rows:
+    """Return how many rows begin at each of these; numpy's own `diff` is written for any array."""
+    counts: Rows = starts[1:] - starts[:-1]
+    return counts
 
 
 def _plotted(topic: str, values: NDArray[Any]) -> NDArray[np.float64]:

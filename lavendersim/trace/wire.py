@@ -13,6 +13,7 @@ memcpy, at any alignment. No Python runs per message.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,7 @@ def varint(value: int) -> bytes:
     return bytes(out)
 
 
+@lru_cache(maxsize=256)
 def tag(number: int, wire_type: int) -> bytes:
     """Return the tag bytes of field `number`."""
     return varint(number << 3 | wire_type)

@@ -9,7 +9,7 @@ defect of one value hides none of another.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from functools import cached_property
 from typing import Any, Final, TypeVar
 
@@ -43,25 +43,18 @@ class Reading:
         self._report = report
         self._nodes: dict[int, tuple[Node, Path]] = {}  # by the id of the mapping's plain data
         self._noted: list[tuple[Mark, str]] = []
-        self._axes = axes
+        self.axes = axes
+        self._known: dict[NamedKind, Collection[str]] = {}
 
-    @cached_property
-    def _names(self) -> dict[NamedKind, Collection[str]]:
-        return {
-            "body": bodies_of(self.root),
-            "body or arrangement": [
-                *bodies_of(self.root),
-                *self.root.get(*ARRANGEMENTS).entries,
-            ],
-            "plane": self.root.get(*BODIES).entries,
-            "measure": self.root.get("measure").entries,
-            "rope": self._connections(("rope",)),
-            "joint": self._connections(JOINTS),
-            "surface": self.root.get("scene", "surfaces").entries,
-            "axis": self._axes,
-        }
+    def _names(self, kind: NamedKind) -> Collection[str]:
+        """Return the names of what is of a kind; each kind is looked for once, when it is asked."""
+        known = self._known.get(kind)
+        if known is None:
+            known = self._known[kind] = _NAMES[kind](self)
+        return known
 
-    def _connections(self, kinds: Collection[str]) -> list[str]:
+    def connections(self, kinds: Collection[str]) -> list[str]:
+        """Return the names of the connections of some kinds."""
         connections = self.root.get("scene", "connections").entries
         return [name for name, one in connections.items() if one.get("kind").text in kinds]
 
@@ -126,7 +119,7 @@ class Reading:
 
     def refusal_of(self, kind: NamedKind, name: str) -> str | None:
         """Return why nothing, or nothing of this kind, is called so."""
-        known = self._names[kind]
+        known = self._names(kind)
         if name not in known:
             if kind == "plane":  # or may have been meant as one
                 known = [one for one in known if self._shape_of(one) not in SOLIDS]
@@ -156,6 +149,21 @@ class Reading:
             among = ", ".join(unique[:16]) + (", ..." if len(unique) > 16 else "")
             shown = label(value.data)
             self._refuse(value.mark, f"{axis}: {shown} is not among the swept values {among}")
+
+
+_NAMES: Final[dict[NamedKind, Callable[[Reading], Collection[str]]]] = {
+    "body": lambda of: bodies_of(of.root),
+    "body or arrangement": lambda of: [
+        *bodies_of(of.root),
+        *of.root.get(*ARRANGEMENTS).entries,
+    ],
+    "plane": lambda of: of.root.get(*BODIES).entries,
+    "measure": lambda of: of.root.get("measure").entries,
+    "rope": lambda of: of.connections(("rope",)),
+    "joint": lambda of: of.connections(JOINTS),
+    "surface": lambda of: of.root.get("scene", "surfaces").entries,
+    "axis": lambda of: of.axes,
+}
 
 
 def same_value(one: Node, other: Node) -> bool:

@@ -46,10 +46,12 @@ class Node:
         """Return the node at the path below this one, or ABSENT, which is false, without one."""
         node = self
         for step in path:
+            content = node.content
             if isinstance(step, str):
-                node = node.entries.get(step, ABSENT)
+                node = content.get(step, ABSENT) if isinstance(content, dict) else ABSENT
             else:
-                node = node.items[step] if 0 <= step < len(node.items) else ABSENT
+                items = content if isinstance(content, tuple) else ()
+                node = items[step] if 0 <= step < len(items) else ABSENT
         return node
 
     def __bool__(self) -> bool:

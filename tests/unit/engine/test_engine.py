@@ -272,3 +272,24 @@ def test_the_problem_of_the_last_step_is_that_of_its_contacts() -> None:
     assert problem is not None
     impulses = engine.contacts["lambda_n"][:2]
     assert impulses == pytest.approx([0.2, 0.1], abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    "numerics",
+    [
+        {},
+        {"solver": "coloured_gauss_seidel"},
+        {"solver": "block_gauss_seidel"},
+        {"impacts": "captured", "integrator": "semi_implicit_euler"},
+    ],
+    ids=["defaults", "coloured", "block", "captured"],
+)
+def test_engines_of_one_kind_have_arrays_of_equal_types(numerics: dict[str, Any]) -> None:
+    # One machine code serves all engines of a kind: it reads their arrays by these types.
+    types: dict[int, set[Any]] = {}
+    made = [heap(count, steps, **numerics) for count in (1, 2, 3, 9) for steps in (1, 8)]
+    for engine in made:
+        found = engines._types_of((engine.state, engine.workspace, engine.log))
+        types.setdefault(engine.kind, set()).add(found)
+    assert all(len(one) == 1 for one in types.values())
+    assert len(types) < len(made), "engines that differ in sizes alone have one kind"
