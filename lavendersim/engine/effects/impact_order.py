@@ -35,8 +35,8 @@ from .effect import Choice, Column, Effect, Fields, Hooks, kernel
 WORK = 512
 # The break of a rack of 15 balls that rest on a table takes some 1000: each part has their rows.
 REBOUND = 2048
-# A ball between a wall and one of a million times its mass has 3,141 impacts (Galperin 2003), nearly
-# all of them in 1/60 s: 3,100 parts of some four rows each.
+# A ball between a wall and one of a million times its mass has 3,141 impacts (Galperin 2003), most
+# of them in 1/60 s: 3,100 parts of some four rows each.
 ENDLESS = 16384
 # Of gravity along a plane: what is left of the normal's last digits.
 ROUND_OFF = 1e-12
