@@ -53,6 +53,7 @@ def make_end_step(spec: Spec) -> Any:
         counters.substeps, counters.rejected, counters.part_unordered = 0, 0, 0
         counters.shortest, counters.estimated_error = 0.0, 0.0
         counters.parts, counters.spent, counters.unordered = 0, 0, 0
+        counters.plastic = 0
         counters.part_sweeps, counters.part_not_converged, counters.part_stronge = 0, 0, 0
 
     return kernel(end_step, spec)

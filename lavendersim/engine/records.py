@@ -236,6 +236,7 @@ COUNTERS: Final[list[Field]] = [
     ("parts", I8),  # made of it so far
     ("spent", I8),  # rows of contacts that they had
     ("unordered", I8),  # 1 when its impacts are no longer made in order
+    ("plastic", I8),  # 1 when nothing of it rebounds any more
     ("met_a", I8),  # the two bodies whose meeting ended the last of them before its time,
     ("met_b", I8),
     ("met_at", F8),  # and when, of the step [s]

@@ -75,6 +75,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     preload: Any = chain(loads, spec) if loaded else None
 
     ordered, centred = step_terms(spec).ordered_impacts, step_terms(spec).centred
+    rebounds = ordered and step_terms(spec).rebounds
     lasting: Any = make_lasting(spec) if centred else None
     is_moving: Any = make_is_moving(spec) if centred else None
     bilateral = row_terms(spec).bilateral
@@ -114,6 +115,10 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             if not predicted:
                 for c in range(count):
                     contacts[c].is_impact, contacts[c].tau = 0, params.dt
+        if rebounds:
+            if counters.plastic == 1:
+                for c in range(count):
+                    contacts[c].e = 0.0
         if predicts:
             if predicted:
                 predict_impacts(contacts, count, motion, params)

@@ -221,7 +221,7 @@ def make_end_span(spec: Spec) -> Any:
 
     def end_half(counters):
         counters.part_unordered |= counters.unordered
-        counters.spent, counters.unordered = 0, 0
+        counters.spent, counters.unordered, counters.plastic = 0, 0, 0
 
     end_half = kernel(end_half, spec)
 

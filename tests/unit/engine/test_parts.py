@@ -31,7 +31,14 @@ def test_the_next_step_begins_with_no_part_and_keeps_the_rest() -> None:
         setattr(own, name, k + 1)
     interpreted(parts.make_end_step(Spec()))(own)
     zero = {"elapsed", "substeps", "rejected", "shortest", "estimated_error", "parts", "spent"}
-    zero |= {"unordered", "part_sweeps", "part_not_converged", "part_unordered", "part_stronge"}
+    zero |= {
+        "unordered",
+        "plastic",
+        "part_sweeps",
+        "part_not_converged",
+        "part_unordered",
+        "part_stronge",
+    }
     for k, name in enumerate(fields):
         expected = 0 if name in zero else NEVER if name == "met_at" else k + 1
         assert getattr(own, name) == expected, name

@@ -23,6 +23,7 @@ from lavendersim.engine.effects import impact_order
 from lavendersim.engine.effects.impact_order import (
     CANDIDATES_A_ROW,
     EFFECT,
+    ENDLESS,
     MOST_ROWS,
     REBOUND,
     make_order,
@@ -202,10 +203,11 @@ def test_what_overlaps_leaves_the_step_without_order() -> None:
         assert length == (DT if unordered else 0.0)
 
 
-def row_of_balls(count: int) -> Step:
-    """Return balls in a row that touch, and one that has come to the first."""
+def row_of_balls(count: int, others: int = 0) -> Step:
+    """Return balls in a row that touch, and one that has come to the first; other pairs rest."""
     places = [(0.2 * k, 0.0, 0.0) for k in range(count)]
-    return Step(bench_of(places, [(0.1, 0.0, 0.0)] + [(0.0, 0.0, 0.0)] * (count - 1)))
+    places += [(0.2 * (k % 2), 1.0 + k // 2, 0.0) for k in range(2 * others)]
+    return Step(bench_of(places, [(0.1, 0.0, 0.0)] + [(0.0, 0.0, 0.0)] * (len(places) - 1)))
 
 
 @pytest.mark.parametrize(("balls", "unordered"), [(MOST_ROWS + 1, 0), (MOST_ROWS + 2, 1)])
@@ -219,14 +221,17 @@ def test_an_impact_of_a_crowd_is_not_made_by_itself(balls: int, unordered: int) 
 
 
 def test_a_step_spends_its_work_and_goes_on_without_order() -> None:
-    """Balls that rebound have more of it."""
+    """Balls that rebound have more of it, most where few touch; there what goes on is plastic."""
     rows = 3
-    own = 1 + rows + rows // CANDIDATES_A_ROW
-    for before, unordered in ((REBOUND - own, 0), (REBOUND - own + 1, 1)):
-        step = row_of_balls(rows + 1)
-        step.counters.spent = before
-        step.part(DT)
-        assert (step.counters.spent, step.counters.unordered) == (before + own, unordered)
+    for others, most in ((0, ENDLESS), (MOST_ROWS - rows + 1, REBOUND)):
+        own = 1 + rows + (rows + others) // CANDIDATES_A_ROW
+        for before, unordered in ((most - own, 0), (most - own + 1, 1)):
+            step = row_of_balls(rows + 1, others)
+            step.counters.spent = before
+            step.part(DT)
+            counters = step.counters
+            assert (counters.spent, counters.unordered) == (before + own, unordered)
+            assert counters.plastic == (unordered if others == 0 else 0)
 
 
 def test_the_part_behind_a_meeting_knows_which_it_was() -> None:
