@@ -69,9 +69,15 @@ def print_unjudged(finished: Any) -> None:
     for name in experiment.unjudged:
         values = [cell[name] for cell in taken.values() if name in cell]
         numbers = [value for value in values if isinstance(value, float | int)]
-        unit = meaning_of(experiment.measures[name])[1].removeprefix(RATIO)
-        if numbers:
-            typer.echo(f"        {name}: {digits_between(numbers)} {unit}".rstrip())
+        spec = experiment.measures[name]
+        known = [number for number in numbers if number == number]
+        unit = meaning_of(spec)[1].removeprefix(RATIO)
+        if known:
+            typer.echo(f"        {name}: {digits_between(known)} {unit}".rstrip())
+        if missing := len(numbers) - len(known):
+            cells = f" in {missing} of {len(numbers)} cells" if len(numbers) > 1 else ""
+            why = f": {spec.NO_NUMBER}" if spec.NO_NUMBER else ""
+            typer.echo(f"        {name}: no number{cells}{why}")
         for reason in dict.fromkeys(value for value in values if isinstance(value, str)):
             typer.echo(f"        {name}: {reason}")
 

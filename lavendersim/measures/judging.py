@@ -167,7 +167,7 @@ def _outcome(expectation: ExpectSpec, cells: Sequence[Cell], values: Values) -> 
             outcome = judge_cell(expectation, row, cells[0])
             if outcome.measured != outcome.measured and not outcome.reason:  # NaN
                 spec = values.measures[expectation.measure]
-                return outcome._replace(reason=beyond_the_end(spec, cells[0]))
+                return outcome._replace(reason=beyond_the_end(spec, cells[0]) or spec.NO_NUMBER)
             return outcome
         return judge_sweep(expectation, cells, values.of(expectation.measure))
     except NotReportedError as error:

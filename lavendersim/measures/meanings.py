@@ -25,6 +25,8 @@ def meaning_of(spec: Measure) -> tuple[str, str]:
     meaning, unit = meaning_of_kind(type(spec))
     if isinstance(spec, FromFile):
         meaning, unit = _meaning_and_unit(spec.meaning or spec.function)
+    if getattr(spec, "reduce", "") == "count":
+        meaning, unit = f"{meaning}; how many bodies have one", RATIO
     form = spec.over or spec.against
     if form is None:
         return meaning, unit

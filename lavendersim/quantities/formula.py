@@ -297,7 +297,8 @@ class _Reader:
         here = self._here
         sign = "$" if here.kind == "value" else ""
         found = "its end" if here.kind == "end" else quoted(sign + here.text)
-        return FormulaError(f"expected {expected} in {quoted(self.text)}, found {found}")
+        hint = "; a power is written **" if here.text == "^" else ""
+        return FormulaError(f"expected {expected} in {quoted(self.text)}, found {found}{hint}")
 
 
 def _of_decimal(text: str) -> Exact:

@@ -21,7 +21,17 @@ MEANT: Final = {
     "cuboid": "box",
     "mesh": "hull",
     "static": "fixed",
+    "bounce": "restitution",
+    "diameter": "radius",
+    "height": "length",
+    "iterations": "sweeps",
+    "angle": "degrees",
+    "time": "duration",
+    "steps": "duration",
+    "less_than": "at_most",
+    "greater_than": "at_least",
 }
+HALVES: Final = {"diameter": "radius"}  # of what the first is, the second is half
 LONGEST_QUOTE = 40
 MOST_NAMES = 24
 MOST_COMPARED = 500  # comparing one misspelt name with more would take noticeable time
@@ -79,7 +89,14 @@ def nearest(name: object, names: Iterable[str]) -> str:
     if not valid:
         return ""
     if close := near(name, valid):
-        half = str(name).casefold().startswith("half") and not close.startswith("half")
-        return f'; did you mean "{close}"{", twice as much" if half else ""}?'
-    listed = ", ".join(valid[:MOST_NAMES]) + (", ..." if len(valid) > MOST_NAMES else "")
+        return f'; did you mean "{close}"{_share(str(name).casefold(), close)}?'
+    more = len(valid) - MOST_NAMES
+    listed = ", ".join(valid[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
     return f"; valid here: {listed}"
+
+
+def _share(written: str, meant: str) -> str:
+    """Return how much of what was written is what was meant, where it is another quantity."""
+    if HALVES.get(written) == meant:
+        return ", half as much"
+    return ", twice as much" if written.startswith("half") and not meant.startswith("half") else ""

@@ -119,8 +119,12 @@ def _convert(digits: str, written_unit: str, unit: str) -> str:
             return f"; {written_unit} is no unit of {QUANTITIES[unit]}"
         return "; numbers are written without a unit"
     factor = factors[written_unit]
-    converted = number * factor if isinstance(factor, Fraction) else float(number) * factor
-    return f"; units are SI and not written, write {float(converted):.15g}"
+    times = number if isinstance(factor, Fraction) else float(number)
+    converted = f"{float(times * factor):.15g}"
+    if "/" in digits and (isinstance(factor, Fraction) or factor.is_integer()):
+        exact = number * Fraction(factor)  # 1/480 is no decimal, and stays exact as a ratio
+        converted = converted if Fraction(converted) == exact else str(exact)
+    return f"; units are SI and not written, write {converted}"
 
 
 def _hertz(unit: str) -> Fraction:

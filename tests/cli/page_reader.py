@@ -51,12 +51,13 @@ class Page(HTMLParser):
         assert not [name for name in named if name.startswith(("http", "/", "file"))]
 
 
-def opened_in_a_browser(page: Path, scratch: Path) -> Page:
-    """Return what a browser makes of a page; skips where there is none."""
+def opened_in_a_browser(page: Path, scratch: Path, width: int = 1200) -> Page:
+    """Return what a browser makes of a page so many pixels wide; skips where there is none."""
     found = [path for name in BROWSERS if (path := shutil.which(name))]
     if not found:
         pytest.skip(f"no browser here: none of {', '.join(BROWSERS)} is installed")
     options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={scratch}"]
+    options.append(f"--window-size={width},1400")
     done = subprocess.run(
         [found[0], *options, "--dump-dom", page.as_uri()],
         capture_output=True,

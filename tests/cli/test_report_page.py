@@ -125,3 +125,24 @@ def test_a_page_that_cannot_be_is_reported_before_anything_runs(
 def test_the_page_opens_in_a_browser(report: Path, tmp_path: Path) -> None:
     page = opened_in_a_browser(report, tmp_path)
     assert [row["data-case"] for row in page.all("tr", "case")] == ["good", "so so", "z"]
+
+
+@pytest.mark.parametrize("width", [500, 900, 1500])
+def test_no_row_reaches_into_the_next(report: Path, tmp_path: Path, width: int) -> None:
+    """By the boxes of a browser: each row of the table, with all in it, ends where the next begins.
+
+    A pixel is for rounding; a picture spans the row of its case and what belongs to it.
+    """
+    asked = """<script>
+      const rows = [...document.querySelectorAll(".cases > tbody > tr")];
+      const end = row => Math.max(...[...row.querySelectorAll(":scope > td:not(.picture)")]
+        .map(cell => cell.getBoundingClientRect().bottom));
+      document.body.dataset.overlaps = rows.slice(1).filter(
+        (row, k) => end(rows[k]) > row.getBoundingClientRect().top + 1).length;
+    </script></body>"""
+    text = re.sub(r"<meta http-equiv[^>]*>", "", report.read_text())  # which allows no other script
+    copy = tmp_path / "copy.html"
+    copy.write_text(text.replace("</body>", asked))
+    page = opened_in_a_browser(copy, tmp_path / "browser", width)
+    (body,) = (at for tag, at in page.seen if tag == "body")
+    assert body["data-overlaps"] == "0"

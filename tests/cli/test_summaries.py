@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -15,6 +16,8 @@ from command_line import lavender
 
 from lavender_cli.cell_lines import line_of, summary_of
 from lavender_cli.claims import print_claims, print_failures, summarise
+from lavender_cli.printing import print_unjudged
+from lavendersim.measures.specs.states import FirstPassage
 from lavendersim.measures.verdict import Verdict
 from lavendersim.runner.run_results import CellResult
 from tests.drop_config import DROP
@@ -173,3 +176,16 @@ def test_a_run_is_checked_and_shown_in_short_and_with_v_cell_by_cell(tmp_path: P
         assert not any(" in 10 of 16 cells" in line for line in full)
         assert all(sum(f"rebound at e={value:g}: " in x for x in full) for value in values)
         assert len(short) < len(full)
+
+
+def test_of_a_measure_without_a_number_the_reason_is_printed_and_no_nan(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    spec = FirstPassage(kind="first_passage", along=(0, 0, 1), level=1.0)
+    experiment = SimpleNamespace(unjudged=["time"], measures={"time": spec})
+    taken = {0: {"time": 0.5}, 1: {"time": math.nan}, 2: {"time": 0.75}}
+    print_unjudged(SimpleNamespace(run=SimpleNamespace(experiment=experiment, taken=taken)))
+    assert capsys.readouterr().out.splitlines() == [
+        "        time: 0.5 to 0.75 s",
+        "        time: no number in 1 of 3 cells: the centre never crosses that level so",
+    ]

@@ -19,7 +19,7 @@ from lavendersim.experiment.text.node import BROKEN, Broken, Mark, Node, Path, k
 from lavendersim.experiment.text.place import missing_key, name_of, place_of
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.chosen_kind import NO_KIND
-from lavendersim.quantities.found import found, near, nearest, quoted
+from lavendersim.quantities.found import MEANT, found, near, nearest, quoted
 from lavendersim.quantities.model import ConfigModel
 
 Model = type[BaseModel]
@@ -124,7 +124,8 @@ def _sentence(
     if kind == "extra_forbidden" or step == "[key]":
         mark = key_mark(root.get(*holder) or root, str(path[-1]))
         if kind == "extra_forbidden":
-            misplaced = getattr(models.get(holder), "MISPLACED", {}).get(step)
+            elsewhere = getattr(models.get(holder), "MISPLACED", {})
+            misplaced = elsewhere.get(step) or elsewhere.get(MEANT.get(str(step), ""))
             hint = f"; {misplaced}" if misplaced else nearest(step, _keys_at(models, holder))
             return mark, f"unknown key {quoted(step)} in {place_of(holder)}{hint}"
         if kind == "lavender":
@@ -187,6 +188,10 @@ def _expected(item: ErrorDetails, node: Node) -> str:
     sentence = f"{expected}, found {found(value)}"
     if kind == "string_type" and isinstance(value, int | float):
         return f"{sentence}; put it in quotes"
+    if kind == "tuple_type" and isinstance(value, dict):
+        return f"{sentence}; its items are written behind dashes, - ..."
+    if kind == "dict_type" and isinstance(value, list | tuple):
+        return f"{sentence}; each has its name in front, NAME: ..."
     if kind == "bool_type" and isinstance(value, str) and value.lower() in _SWITCHES:
         return f"{sentence}; write {_SWITCHES[value.lower()]}"
     return sentence

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
@@ -76,6 +77,10 @@ class _MatterOwn(declared("MatterOwn", _Mass, MOTION_KEYS), _Mass):  # type: ign
 
 class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: ignore[misc]
     """What bodies have in common, whether they stand alone or are arranged."""
+
+    MISPLACED: ClassVar[Mapping[str, str]] = {
+        key: f"write surface: {{{key}: ...}}" for key in Surface.model_fields
+    }
 
     @classmethod
     def rules(cls, at: Place) -> None:

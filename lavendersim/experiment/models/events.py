@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Final, Literal
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Final, Literal
 
 from pydantic import Field
 
@@ -40,6 +41,8 @@ _MOVES: Final = {"teleport": "a teleport", "orientation": "a new orientation"}
 
 
 class _Event(ConfigModel):
+    MISPLACED: ClassVar[Mapping[str, str]] = {"time": 'did you mean "at"?'}
+
     at: Annotated[float, Quantity("s", minimum=0)] | None = Field(
         default=None, description="[s] simulated time; this, or `when`"
     )

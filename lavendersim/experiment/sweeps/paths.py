@@ -68,11 +68,27 @@ _NOTHING: Final = object()  # no type takes it
 
 def find_path(path: Node, root: Node, report: Report) -> Path | None:
     """Return the steps of a path that a sweep may vary; notes why it may not."""
+    text = path.text or ""
     try:
-        return _resolve(path.text or "", root)
+        return _resolve(text, root)
     except _NoPath as reason:
-        report.add(path.mark, f"path: {reason}")
+        whole = _with_section(text, root)
+        hint = f"; did you mean {whole}?" if whole else ""
+        report.add(path.mark, f"path: {reason}{hint}")
         return None
+
+
+def _with_section(path: str, root: Node) -> str | None:
+    """Return the path with the section that it leaves out in front, where one has such a value."""
+    if path.split(".")[0] in SWEPT_SECTIONS:
+        return None
+    for section in ("scene", "scene.bodies", "numerics"):
+        try:
+            _resolve(whole := f"{section}.{path}", root)
+        except _NoPath:
+            continue
+        return whole
+    return None
 
 
 def _resolve(path: str, root: Node) -> Path:

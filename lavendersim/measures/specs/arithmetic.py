@@ -36,6 +36,7 @@ class OfMeasures(Measure):
 class Ratio(OfMeasures):
     """A measure over another; NaN where that is 0. Of rows number by number."""
 
+    NO_NUMBER = "what it divides by is 0, or one of the two is no number"
     kind: Literal["ratio"]
     to: MeasureName = Field(description="the measure it is divided by; it stands above, too")
 
@@ -48,6 +49,7 @@ class Ratio(OfMeasures):
 class DifferenceOf(OfMeasures):
     """A measure less another, in their unit. Of rows number by number."""
 
+    NO_NUMBER = "one of the two is no number"
     kind: Literal["difference"]
     minus: MeasureName = Field(description="the measure that is subtracted; it stands above, too")
 
@@ -60,5 +62,6 @@ class DifferenceOf(OfMeasures):
 class OfRow(OfMeasures):
     """One number of a row of numbers, in its unit; NaN where the row has a NaN."""
 
+    NO_NUMBER = "a number of the row is none"
     kind: Literal["of_row"]
     of: Statistic = Field(description="which number")

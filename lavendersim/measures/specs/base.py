@@ -9,7 +9,7 @@ A kind is a subclass of `Measure` with a field `kind: Literal["its_name"]`. Ever
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -46,6 +46,8 @@ class ClosedForm(ConfigModel):
 class Measure(Reader):
     """What every kind of measure may carry."""
 
+    NO_NUMBER: ClassVar[str] = ""  # why the log of a whole run may have none
+
     if TYPE_CHECKING:
         kind: str  # of each subclass a Literal of its own
 
@@ -70,6 +72,7 @@ class PairMeasure(Measure):
     """A measure of the contacts of one body."""
 
     READS = CONTACTS
+    NO_NUMBER = "nothing touches the body then"
 
     body: BodyName = Field(description="the body the measure is taken on")
     other: BodyName | None = Field(

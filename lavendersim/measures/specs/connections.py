@@ -15,6 +15,7 @@ class Tension(Measure):
     """Force [N] by which a rope pulls at the end of the run; 0 in steps in which it is slack."""
 
     READS = CONTACTS
+    NO_NUMBER = "its window is longer than the run, or neither body moves"
     kind: Literal["tension"]
     connection: RopeName = Field(description="name of the rope")
     last: Seconds = Field(default=0.25, description="length of the window at the end [s]")
@@ -27,6 +28,7 @@ class JointForce(Measure):
     """Magnitude of the force [N] that a joint passes on at the end of the run."""
 
     READS = CONTACTS
+    NO_NUMBER = "its window is longer than the run, or neither body moves"
     kind: Literal["joint_force"]
     connection: JointName = Field(description="name of the joint")
     last: Seconds = Field(default=0.25, description="length of the window at the end [s]")
@@ -39,6 +41,7 @@ class JointTorque(Measure):
     """Magnitude of the torque [N m] about its `at` that a joint passes on as the run ends."""
 
     READS = CONTACTS
+    NO_NUMBER = "its window is longer than the run, or neither body moves"
     kind: Literal["joint_torque"]
     connection: JointName = Field(description="name of the joint")
     last: Seconds = Field(default=0.25, description="length of the window at the end [s]")

@@ -24,10 +24,12 @@ class _OverBounces(Measure):
 class EnergyByBounce(_OverBounces):
     """Relative change of mechanical energy at the apex after bounce 1, 2, ... (a row)."""
 
+    NO_NUMBER = "the run ends before the last of these bounces"
     kind: Literal["energy_by_bounce"]
 
 
 class EnergyAfterBounces(_OverBounces):
     """The last number of `energy_by_bounce`."""
 
+    NO_NUMBER = "the run ends before the last of these bounces"
     kind: Literal["energy_after_bounces"]

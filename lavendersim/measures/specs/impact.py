@@ -15,6 +15,7 @@ from lavendersim.quantities.readings import CONTACTS, SUMS
 class FirstApex(Measure):
     """Surface clearance [m] at the first apex after the first contact; 0 if it never leaves."""
 
+    NO_NUMBER = "the body touches nothing, or the run ends before its apex"
     kind: Literal["first_apex"]
     body: BodyName = Field(description="the body that rebounds")
     above: PlaneName = Field(description="the plane the clearance is taken above")
@@ -29,6 +30,7 @@ class ImpactImpulse(PairMeasure):
 class StepImpulse(PairMeasure):
     """Sum of the normal impulses [N s] of one step."""
 
+    NO_NUMBER = "that step is not in the log"
     kind: Literal["step_impulse"]
     step: Annotated[int, Quantity("", minimum=1, whole=True)] = Field(description="which step [-]")
 
@@ -68,6 +70,7 @@ class ImpulseBalance(Measure):
     """Relative distance of impulse from momentum change plus weight times time, whole scene."""
 
     READS = CONTACTS
+    NO_NUMBER = "nothing pushes, or the run ends within the impact"
     kind: Literal["impulse_balance"]
     window: Literal["first_impact", "all"] = Field(
         default="first_impact",
@@ -79,4 +82,5 @@ class MomentumDrift(Measure):
     """Largest change of the scene's momentum over the run, over its largest momentum."""
 
     READS = SUMS
+    NO_NUMBER = "nothing moves"
     kind: Literal["momentum_drift"]

@@ -81,6 +81,7 @@ class RestTime(Measure):
     """Time [s] from which on no centre moves faster than a threshold; NaN if one still does."""
 
     READS = POSES
+    NO_NUMBER = "a centre is faster than that until the run ends"
     kind: Literal["rest_time"]
     slower_than: Annotated[float, Quantity("m/s", above=0)] = Field(description="threshold [m/s]")
     bodies: tuple[BodiesName, ...] = Field(

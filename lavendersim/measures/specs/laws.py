@@ -20,6 +20,7 @@ class ForceError(Measure):
     """Largest |vertical contact force / weight - 1| [-] of what rests, in any step of a window."""
 
     READS = CONTACTS
+    NO_NUMBER = "nothing of it has a weight, or the window is longer than the run"
     kind: Literal["force_error"]
     body: BodyName | None = Field(
         default=None,
@@ -47,12 +48,14 @@ class _EnergyChange(Measure):
 class EnergyDrift(_EnergyChange):
     """Largest |E/E0 - 1| [-] of the scene's kinetic and potential energy over the run."""
 
+    NO_NUMBER = "the run begins without energy"
     kind: Literal["energy_drift"]
 
 
 class EnergyGain(_EnergyChange):
     """Largest E/E0 - 1 [-] over the run: above 0 where energy was gained."""
 
+    NO_NUMBER = "the run begins without energy"
     kind: Literal["energy_gain"]
 
 
@@ -60,6 +63,7 @@ class AngularMomentumDrift(Measure):
     """Largest |L - L0| / |L0| [-] of the scene's angular momentum vector over the run."""
 
     READS = SUMS
+    NO_NUMBER = "nothing turns"
     kind: Literal["angular_momentum_drift"]
 
 
@@ -71,6 +75,7 @@ class LawViolation(Measure):
     """
 
     READS = SUMS
+    NO_NUMBER = "no step ends behind that time, or nothing can touch"
     kind: Literal["law_violation"]
     part: Literal["natural_map", "signorini", "cone", "dissipation"] = Field(
         description="which part of the law"
@@ -82,4 +87,5 @@ class NotConvergedSteps(Measure):
     """Number of steps that did not converge: their residual stayed above the tolerance."""
 
     READS = SUMS
+    NO_NUMBER = "no tolerance is asked for"
     kind: Literal["not_converged_steps"]

@@ -19,6 +19,7 @@ class ApexError(Measure):
     """|apex / (e^(2 k) h) - 1| [-] of the k-th apex of a body dropped from the clearance h."""
 
     READS = POSES
+    NO_NUMBER = "the run ends before that bounce's apex"
     kind: Literal["apex_error"]
     body: BodyName = Field(description="the bouncing body")
     above: PlaneName = Field(description="the plane it bounces on")
@@ -43,6 +44,7 @@ class SlipDistance(Measure):
     """Distance [m] between a body's centre at the beginning and at the end of a window."""
 
     READS = POSES
+    NO_NUMBER = "the window is longer than the run"
     kind: Literal["slip_distance"]
     body: BodyName = Field(description="the body")
     last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
@@ -52,6 +54,7 @@ class Creep(Measure):
     """Mean speed [m/s] of a body over a window: `slip_distance` over the window's length."""
 
     READS = POSES
+    NO_NUMBER = "the window is longer than the run"
     kind: Literal["creep"]
     body: BodyName = Field(description="the body")
     last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
@@ -65,6 +68,7 @@ class EffectiveFriction(Measure):
     """
 
     READS = POSES
+    NO_NUMBER = "gravity does not press the body on the plane, or the window is longer than the run"
     kind: Literal["effective_friction"]
     body: BodyName = Field(description="the sliding body")
     on: PlaneName = Field(description="the plane it slides on")
@@ -79,6 +83,7 @@ class PassedThrough(Measure):
     """
 
     READS = POSES
+    NO_NUMBER = "the body starts within the wall"
     kind: Literal["passed_through"]
     body: BodyName = Field(description="the body that may pass")
     wall: BodyName = Field(description="a plane or a fixed box")

@@ -18,4 +18,5 @@ class Optimality(Measure):
     """
 
     READS = CONTACTS
+    NO_NUMBER = "the log has no contacts"
     kind: Literal["optimality"]

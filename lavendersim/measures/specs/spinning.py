@@ -23,6 +23,7 @@ class VelocityError(Measure):
     """
 
     READS = POSES
+    NO_NUMBER = "another body can move, or nothing is hit"
     kind: Literal["velocity_error"]
     body: BodyName = Field(description="the body that hits; the only movable one")
     other: BodyName = Field(description="the plane or fixed body it hits")
@@ -32,6 +33,7 @@ class AngularVelocityError(Measure):
     """Largest |omega - omega*| / |omega(0)| [-], body axes, from Jacobi's free rotation."""
 
     READS = POSES
+    NO_NUMBER = "another body can move, or the body does not turn"
     kind: Literal["angular_velocity_error"]
     body: BodyName = Field(description="the free body; the only movable one")
     until: Seconds | None = Field(default=None, description="[s] the whole run when absent")
@@ -44,6 +46,7 @@ class FlipTimeError(Measure):
     """
 
     READS = POSES
+    NO_NUMBER = "the run has fewer flips"
     kind: Literal["flip_time_error"]
     body: BodyName = Field(description="the free body; the only movable one")
     flips: Flips = Field(description="how many flips are compared, from the first [-]")

@@ -86,6 +86,7 @@ class FirstPassage(_OfBodies):
     Between two states the component is taken as a straight line.
     """
 
+    NO_NUMBER = "the centre never crosses that level so"
     kind: Literal["first_passage"]
     along: Direction = Field(description="direction, world frame; is normalised")
     level: Annotated[float, Quantity("m")] = Field(description="[m] what is crossed")

@@ -40,6 +40,7 @@ class MaxPenetration(PairMeasure):
 class SettlingTime(PairMeasure):
     """Time [s] from the first contact until the penetration stays below a threshold."""
 
+    NO_NUMBER = "nothing touches the body, or it is deeper than the threshold until the run ends"
     kind: Literal["settling_time"]
     threshold: Annotated[float, Quantity("m", above=0)] = Field(description="threshold [m]")
 

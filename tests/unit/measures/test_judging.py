@@ -10,7 +10,9 @@ from synthetic import SyntheticCell
 
 from lavendersim.errors import TraceError
 from lavendersim.measures import judge, judge_nodes
-from lavendersim.measures.specs.states import PositionAt
+from lavendersim.measures.judging import TIMES
+from lavendersim.measures.registration import FUNCTIONS
+from lavendersim.measures.specs.states import FirstPassage, PositionAt
 
 
 def test_an_expectation_that_selects_no_cell_fails() -> None:
@@ -67,3 +69,23 @@ def test_a_measure_behind_the_end_of_the_run_says_so(time: float, why: str) -> N
     assert verdict.passed is not bool(why)
     assert why in verdict.message
     assert "run ends" not in verdict.message or why
+
+
+def test_a_number_that_a_whole_run_does_not_have_says_why() -> None:
+    spec = FirstPassage(kind="first_passage", body="ball", along=(0.0, 0.0, 1.0), level=1e9)
+    (verdict,) = judge({"time": spec}, [expect("time", at_most=5.0)], [cell(0.0)])
+    assert not verdict.passed
+    assert "never crosses that level" in verdict.message
+
+
+def test_every_measure_that_can_be_no_number_says_why_it_is_none() -> None:
+    """Functions of measures say of NaN when it is; a time behind the run's end has a sentence."""
+    silent = [
+        model.__name__
+        for model, function in FUNCTIONS.items()
+        if model.__module__.startswith("lavendersim.")
+        and "NaN" in (function.__doc__ or "")
+        and not model.NO_NUMBER
+        and not set(TIMES) & set(model.model_fields)
+    ]
+    assert not silent

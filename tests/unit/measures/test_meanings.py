@@ -7,6 +7,7 @@ import pytest
 from lavendersim.measures.meanings import described_kinds, meaning_of, meaning_of_kind
 from lavendersim.measures.specs.base import ClosedForm, Measure
 from lavendersim.measures.specs.catalogue import KINDS
+from lavendersim.measures.specs.states import FirstPassage
 
 
 class Fast(Measure):
@@ -25,6 +26,12 @@ def test_the_first_sentence_is_the_meaning_and_its_bracket_the_unit() -> None:
 
 def test_two_units_are_none() -> None:
     assert meaning_of_kind(Ratio)[1] == ""
+
+
+def test_a_count_of_bodies_has_not_the_unit_of_their_numbers() -> None:
+    spec = FirstPassage(kind="first_passage", along=(0, 0, 1), level=1.0, reduce="count")
+    assert meaning_of(spec)[1] == "-"
+    assert meaning_of(spec.model_copy(update={"reduce": "max"}))[1] == "s"
 
 
 def test_beside_a_closed_form_it_is_a_ratio() -> None:

@@ -52,14 +52,18 @@ def test_the_name_that_was_meant(written: str, meant: str | None) -> None:
 def test_without_a_near_name_all_are_listed_each_once() -> None:
     assert nearest("zzz", ["one", "two", "one"]) == "; valid here: one, two"
     assert nearest("zzz", []) == ""
-    many = nearest("zzz", [f"name{k}" for k in range(MOST_NAMES + 1)])
-    assert many.endswith(f"name{MOST_NAMES - 1}, ...")
+
+
+def test_names_beyond_those_that_are_listed_are_counted() -> None:
+    many = nearest("zzz", [f"name{k}" for k in range(MOST_NAMES + 3)])
+    assert many.endswith(f"name{MOST_NAMES - 1} and 3 more")
 
 
 def test_half_of_a_quantity_is_twice_as_much_of_the_whole() -> None:
     # Who writes `half_size` gave half of what `size` is.
     assert nearest("half_size", ["size"]) == '; did you mean "size", twice as much?'
     assert nearest("siez", ["size"]) == '; did you mean "size"?'
+    assert nearest("diameter", ["radius"]) == '; did you mean "radius", half as much?'
 
 
 def test_a_word_of_other_programs_has_the_name_here_where_that_is_valid() -> None:
