@@ -77,7 +77,7 @@ def make_foresee(spec: Spec) -> Any:
     relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
     turns, gap_acceleration = step_terms(spec).turns, make_gap_acceleration(spec)
     restitution, compliance = step_terms(spec).rebounds, row_terms(spec).compliant
-    springs = row_terms(spec).elastic
+    springs, curved = row_terms(spec).elastic, row_terms(spec).curved
     draws, is_drawn = made_once(spec, "is_drawn")
     overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
     acceleration_of_rope: Any = make_gap_acceleration_of_rope(spec) if ropes else None
@@ -88,6 +88,9 @@ def make_foresee(spec: Spec) -> Any:
         soft = False  # its impulse takes time: none at an instant
         if compliance:
             soft = pair.compliance > 0.0
+        if curved:
+            if pair.hertz_stiffness > 0.0:  # its law reckons with what is left of a gap
+                return False
         if soft and not springs:
             return False
         v = contact.rate

@@ -9,7 +9,7 @@ from .compile import kernel
 from .effects import made_once
 from .overlooked_points import make_note_waiting
 from .records import TOUCHING
-from .row_terms import row_terms
+from .row_terms import make_is_soft, row_terms
 from .spec import Spec
 from .step_terms import step_terms
 
@@ -26,13 +26,14 @@ def _make_is_plastic(spec: Spec) -> Any:
     springs, ropes = row_terms(spec).elastic, row_terms(spec).taut
     bilateral, stopped = row_terms(spec).bilateral, row_terms(spec).stopped
     rebounds = step_terms(spec).rebounds
+    is_soft: Any = make_is_soft(spec) if springs else None
 
     def is_plastic(contact, pair):
         plastic = True
         if rebounds:
             plastic = pair.restitution == 0.0
         if springs:
-            plastic = plastic and pair.compliance == 0.0
+            plastic = plastic and not is_soft(pair)
         if ropes:
             plastic = plastic and contact.span == 0.0
         if bilateral:
@@ -93,6 +94,7 @@ def _make_together(spec: Spec) -> Any:
     slowest, springs = make_slowest(spec), row_terms(spec).elastic
     bilateral, turns = row_terms(spec).bilateral, step_terms(spec).turns
     meet_flush: Any = make_meet_flush(spec) if turns else None
+    is_soft: Any = make_is_soft(spec) if springs else None
 
     def hands_on(contact, bodies, motion):
         # What does not move hands nothing on.
@@ -114,7 +116,7 @@ def _make_together(spec: Spec) -> Any:
             contact = contacts[c]
             takes_part = contact.phi <= TOUCHING or (contact.phi <= slop and contact.waits == 0)
             if springs:
-                takes_part = takes_part and pairs[contact.pair].compliance == 0.0
+                takes_part = takes_part and not is_soft(pairs[contact.pair])
             if bilateral:
                 takes_part = takes_part or contact.bilateral == 1
             if takes_part:

@@ -38,6 +38,19 @@ def make_acts(spec: Spec) -> Any:
     return kernel(acts, spec)
 
 
+def make_is_soft(spec: Spec) -> Any:
+    """Return `kernel(pair) -> whether` its contacts push as springs, of elastic engines."""
+    curved = row_terms(spec).curved
+
+    def is_soft(pair):
+        soft = pair.compliance > 0.0
+        if curved:
+            soft = soft or pair.hertz_stiffness > 0.0
+        return soft
+
+    return kernel(is_soft, spec)
+
+
 def by_friction(spec: Spec, make_frictionless: Any, make_frictional: Any) -> Any:
     """Return the kernel for the contacts that an engine has: of one kind, or by the contact.
 

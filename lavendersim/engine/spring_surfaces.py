@@ -12,6 +12,7 @@ from typing import Any
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import has_hook
+from .hertz_law import make_stored
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
@@ -80,7 +81,8 @@ def make_stored_in_contacts(spec: Spec) -> Any:
     Of unions that nothing works on. shifts: displacements [m, rad]. A spring acts through all of a
     step in which it pushes, so its stretch counts there as its compression does.
     """
-    normal_shift = make_normal_velocity(spec)
+    normal_shift, curved = make_normal_velocity(spec), row_terms(spec).curved
+    stored: Any = make_stored(spec) if curved else None
 
     def stored_in_contacts(contacts, count, rows, shifts):
         won, had = 0.0, 0.0
@@ -90,10 +92,13 @@ def make_stored_in_contacts(spec: Spec) -> Any:
             if group == 0 or contact.spring_compliance == 0.0 or contact.lambda_n <= 0.0:
                 continue
             if rows[group - 1].again == 1 and rows[group - 1].worked == 0:
-                before = contact.phi
-                after = before + normal_shift(contact, shifts[contact.a], shifts[contact.b])
-                before = 0.5 * before * before / contact.spring_compliance
-                after = 0.5 * after * after / contact.spring_compliance
+                begin = contact.phi
+                end = begin + normal_shift(contact, shifts[contact.a], shifts[contact.b])
+                before = 0.5 * begin * begin / contact.spring_compliance
+                after = 0.5 * end * end / contact.spring_compliance
+                if curved:
+                    if contact.hertz_stiffness > 0.0:  # what it stores as it leaves is none
+                        before, after = stored(contact, -begin), stored(contact, -end)
                 won, had = won + (after - before), had + min(before, after)
         return won, had
 

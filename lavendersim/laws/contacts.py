@@ -24,7 +24,14 @@ from .motion import Floats, RecordedMotion
 # What of a plan says who may touch whom, where its points are and what the pair obeys.
 _GEOMETRY = {
     *("broad_phase", "compound", "compliance", "contact_torque", "external_force", "friction"),
-    *("kinematic", "restitution", "rotation", "static_friction", "surface_velocity"),
+    *(
+        "hertz_contact",
+        "kinematic",
+        "restitution",
+        "rotation",
+        "static_friction",
+        "surface_velocity",
+    ),
 }
 # Impulses of these are in no pose and no velocity, or they have no round cone of three numbers.
 _UNKNOWN = (
@@ -162,7 +169,7 @@ class ContactSearch:
             found["phi"].copy(),
             np.where(_number(of_pair, "friction") > 0.0, mu, 0.0),
             _number(of_pair, "restitution"),
-            _number(of_pair, "compliance") == 0.0,
+            (_number(of_pair, "compliance") == 0.0) & (_number(of_pair, "hertz_stiffness") == 0.0),
             self._belt(b) - self._belt(a),
         )
 

@@ -163,7 +163,10 @@ def steady_penetration_above_slop(cell: CellConfig, moving: CellBody, plane: Cel
     """Return d - slop [m] at rest on a compliant contact."""
     left = 1.0 - cell.numerics.projection
     load = mass_of(moving) * _pull(cell, plane)
-    indentation = mixed(moving.surface, plane.surface).compliance * load
+    between = mixed(moving.surface, plane.surface)
+    if between.hertz_stiffness > 0.0:
+        return float((load / between.hertz_stiffness) ** (2.0 / 3.0) - cell.numerics.slop)
+    indentation = between.compliance * load
     if cell.numerics.compliance_law == "spring" and cell.numerics.stabilisation_gain == 0.0:
         return float(indentation) - cell.numerics.slop
     return float(left * indentation / (1.0 - left * (1.0 - cell.numerics.stabilisation_gain)))

@@ -98,14 +98,16 @@ def stored_as_found(trace: Trace, step: int) -> float:
     first, last = (int(np.searchsorted(every["step"], step, side)) for side in ("left", "right"))
     surfaces = _surfaces_in(trace, step)
     found: dict[tuple[int, int, int], float] = {}
-    compliances: dict[tuple[int, int], float] = {}
+    between: dict[tuple[int, int], Surface] = {}
     for row in every[first:last]:
         pair, key = (row["body_a"], row["body_b"]), (row["body_a"], row["body_b"], row["feature"])
-        if pair not in compliances:
-            compliances[pair] = mixed(surfaces[pair[0]], surfaces[pair[1]]).compliance
-        compliance = compliances[pair]
-        if compliance > 0.0:
-            depth = max(-float(row["separation"]), 0.0)
+        if pair not in between:
+            between[pair] = mixed(surfaces[pair[0]], surfaces[pair[1]])
+        compliance, stiffness = between[pair].compliance, between[pair].hertz_stiffness
+        depth = max(-float(row["separation"]), 0.0)
+        if stiffness > 0.0:
+            found.setdefault(key, 0.4 * stiffness * depth**2.5)
+        elif compliance > 0.0:
             found.setdefault(key, 0.5 * depth * depth / compliance)
     return sum(found.values())
 

@@ -228,7 +228,7 @@ def law_of(config: CellConfig) -> str:
         return peer_of(config.engine.name).law
     numerics = config.numerics
     surfaces = [pair.surface for pair in class_pairs(colliders([*config.scene.bodies.values()]))]
-    compliant = any(surface.compliance for surface in surfaces)
+    compliant = any(one.compliance or one.hertz_stiffness for one in surfaces)
     laws = ["compliant contacts" if compliant else "rigid contacts"]
     if any(surface.friction for surface in surfaces):
         laws.append(CONES.get(numerics.friction_cone, numerics.friction_cone))

@@ -210,6 +210,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "stabilisation": ("balls",),
     "compliance": ("balls", "conjugate balls"),
     "contact_spring": ("flying brick",),
+    "hertz_contact": ("flying brick",),
     "warm_start": ("cold balls",),
     "newton": ("single ball",),
     "least_norm": ("single ball",),

@@ -34,6 +34,7 @@ OF_FILES = {
         "configs/scenes/friction_laws.yaml",
     ),
     "effects/*": ("tests/unit/engine/effects", "tests/physics/test_undetermined_forces.py"),
+    "effects/hertz*": ("tests/physics/test_hertz_contacts.py",),
     "effects/*spring*": ("tests/physics/test_contact_springs.py",),
     "effects/impact*": ("tests/physics/test_pairwise_impacts.py",),
     "effects/sleeping.py": ("tests/physics/test_sleeping_configs.py",),

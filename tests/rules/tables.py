@@ -30,7 +30,7 @@ SECTIONS = {
         *("contact_torque", "friction", "frictionless_contact", "rope", "joint"),
         *("joint_stop", "motor"),
         *("stabilisation", "compliance", "restitution", "surface_velocity", "capture_in_sweeps"),
-        *("cohesion", "contact_spring", "static_friction", "falling_restitution"),
+        *("cohesion", "contact_spring", "hertz_contact", "static_friction", "falling_restitution"),
         *("anisotropic_friction", "contact_patch", "tangential_restitution"),
     ),
     "impacts-at-the-surface": ("impact_time", "impact_energy"),

@@ -22,6 +22,7 @@ AT_WORK = {
     ),
     "effects/anisotropic_friction.yaml": ("anisotropic_friction",),
     "effects/contact_patch.yaml": ("contact_patch",),
+    "effects/hertz_contact.yaml": ("hertz_contact",),
     "effects/falling_restitution.yaml": ("falling_restitution",),
     "effects/pile.yaml": ("broad_phase", "fast_bodies", "packed_sweeps"),
     "effects/joint.yaml": ("joint",),

@@ -35,13 +35,15 @@ ELSEWHERE = {
         "scene/expected_contacts.py": "how soon bodies have landed",
     },
     "compliance": {
-        "engine/effects/pairwise_impacts.py": FIELD,
-        "engine/effects/fast_bodies.py": "springs give energy back",
-        "engine/effects/impact_order.py": FIELD,
+        "engine/row_terms.py": FIELD,
         "engine/foreseen_impacts.py": FIELD,
-        "engine/impact_rows.py": FIELD,
         "engine/spring_surfaces.py": FIELD,
+        "engine/effects/decision.py": "which pairs give way",
         "engine/effects/contact_spring.py": "is another law of it",
+        "engine/effects/hertz_contact.py": "no compliance may be beside it",
+    },
+    "contact_spring": {
+        "engine/effects/hertz_contact.py": "is another law of it",
     },
     "restitution": {
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",

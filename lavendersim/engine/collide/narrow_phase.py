@@ -22,6 +22,10 @@ from .records import put_normal
 from .rope import make_rope
 from .swept import make_is_fast, make_swept_manifold
 
+# Springs that begin to push within a step may hit a body that does not move yet, which then
+# meets others: contacts by `hertz_law` are looked for so many reaches of the fastest ahead [-].
+REACHES = 4.0
+
 
 @inner
 def displacement(of_a, of_b, share, dt):
@@ -106,7 +110,7 @@ def make(spec: Spec):
     bilateral, levers = row_terms(spec).bilateral, row_terms(spec).levers
     bounded, stopped = row_terms(spec).bounded, row_terms(spec).stopped
     sleeps, still = made_once(spec, "is_still")
-    overlooks = step_terms(spec).overlooks
+    overlooks, curved = step_terms(spec).overlooks, row_terms(spec).curved
     marks, mark_middle = made_once(spec, "mark_middle")
     note_left_out: Any = make_note_left_out(spec) if overlooks else None
 
@@ -119,6 +123,11 @@ def make(spec: Spec):
         reduction = scratch.manifold.reduction
         if overlooks:
             workspace.overlooked.noted[0] = 0
+        widest = 0.0
+        if curved:
+            for i in range(motion.shape[0]):
+                widest = max(widest, motion[i].reach)
+            widest = TOUCHING + REACHES * widest
         for p in range(listed):
             i, j = pairs[p].a, pairs[p].b
             owner_i, owner_j = i, j
@@ -134,6 +143,9 @@ def make(spec: Spec):
             if speculative:
                 ma, mb = motion[owner_i], motion[owner_j]
                 margin = TOUCHING + ma.reach + mb.reach
+                if curved:
+                    if pairs[p].hertz_stiffness > 0.0:
+                        margin = max(margin, widest)
             if sweeps:
                 d = displacement(motion[owner_i], motion[owner_j], share, dt)
                 fast = is_fast(bodies[i], bodies[j], d)

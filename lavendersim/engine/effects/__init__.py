@@ -62,6 +62,7 @@ NAMES: Final = (
     "stabilisation",
     "compliance",
     "contact_spring",
+    "hertz_contact",
     "warm_start",
     "newton",
     "packed_sweeps",

@@ -12,12 +12,14 @@ from .keys import COMPLIANCE, SurfaceKey, in_series
 
 def _described(pair: PairFacts[str]) -> str:
     c = pair.surface.compliance
-    return f"compliance {c:g} m/N" if c > 0.0 else ""
+    if c > 0.0:
+        return f"compliance {c:g} m/N"
+    return "gives way by a law of its own" if pair.is_soft else ""
 
 
 def decide(facts: Facts) -> Decision:
     """On when a pair that may touch is compliant."""
-    if any(pair.surface.compliance > 0.0 for pair in facts.pairs):
+    if any(pair.is_soft for pair in facts.pairs):
         return Decision(True, by_pair(facts.pairs, _described))
     return Decision(False, "every pair that may touch has compliance 0")
 

@@ -13,6 +13,7 @@ A contact with a spring has no impact, so its restitution has no effect, and it 
 """
 
 from math import sqrt
+from typing import Any
 
 from ..step_terms import step_terms
 from ..terms import RowTerms
@@ -26,12 +27,14 @@ FAST = 4.0
 
 def _described(pair: PairFacts[str]) -> str:
     c = pair.surface.compliance
-    return f"a spring of {c:g} m/N" if c > 0.0 else ""
+    if c > 0.0:
+        return f"a spring of {c:g} m/N"
+    return "a spring that stiffens" if pair.is_soft else ""
 
 
 def decide(facts: Facts) -> Decision:
     """On when a pair that may touch is compliant, and its law is the spring."""
-    if not any(pair.surface.compliance > 0.0 for pair in facts.pairs):
+    if not any(pair.is_soft for pair in facts.pairs):
         return Decision(False, "every pair that may touch has compliance 0")
     if facts.compliance_law != "spring":
         return Decision(False, f"compliance_law is {facts.compliance_law}")
@@ -42,9 +45,28 @@ def decide(facts: Facts) -> Decision:
 
 def make_row(spec):
     """Return `kernel(contact, v, params)`: target and gamma; v: v_n as the step begins [m/s]."""
-    mean = step_terms(spec).centred
+    from ..hertz_law import make_touch
+    from ..row_terms import row_terms
+
+    linear_row = _make_linear_row(spec)
+    if not row_terms(spec).curved:
+        return linear_row
+    touch = make_touch(spec)
 
     def spring_row(contact, v, params):
+        if contact.hertz_stiffness > 0.0:
+            contact.spring_v = v
+            touch(contact, v, params)
+        else:
+            linear_row(contact, v, params)
+
+    return kernel(spring_row, spec)
+
+
+def _make_linear_row(spec):
+    mean = step_terms(spec).centred
+
+    def linear_row(contact, v, params):
         dt, c = params.dt, contact.spring_compliance
         damping = 2.0 * contact.damping_ratio / sqrt(contact.k_n * c)
         contact.spring_v = v
@@ -62,12 +84,12 @@ def make_row(spec):
             contact.gamma = c / (dt * (dt + c * damping))
             contact.target = contact.gamma * dt * contact.phi / c
 
-    return kernel(spring_row, spec)
+    return kernel(linear_row, spec)
 
 
 def make(spec):
     """Return `kernel(contact, pair, params)`."""
-    spring_row = make_row(spec)
+    linear_row = _make_linear_row(spec)
     mean = step_terms(spec).centred
 
     def spring(contact, pair, params):
@@ -77,7 +99,7 @@ def make(spec):
             v = contact.v_n_pre
             if mean:
                 v -= contact.dv_n
-            spring_row(contact, v, params)
+            linear_row(contact, v, params)
 
     return kernel(spring, spec)
 
@@ -85,7 +107,11 @@ def make(spec):
 def make_energy(spec):
     """Return `kernel(contacts, count, velocities, params) -> energy` after the solve [J]."""
     from ..contact import make_normal_velocity
+    from ..hertz_law import make_stored
+    from ..row_terms import row_terms
 
+    curved = row_terms(spec).curved
+    stored: Any = make_stored(spec) if curved else None
     normal_velocity = make_normal_velocity(spec)
     mean = step_terms(spec).centred
 
@@ -98,7 +124,11 @@ def make_energy(spec):
                 if mean:
                     v = 0.5 * (v + contact.spring_v)
                 depth = max(-(contact.phi + params.dt * v), 0.0)
-                total += 0.5 * depth * depth / contact.spring_compliance
+                energy = 0.5 * depth * depth / contact.spring_compliance
+                if curved:
+                    if contact.hertz_stiffness > 0.0:
+                        energy = stored(contact, depth)
+                total += energy
         return total
 
     return kernel(spring_energy, spec)

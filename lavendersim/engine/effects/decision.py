@@ -54,6 +54,11 @@ class PairFacts(NamedTuple, Generic[Which]):
     off_centre: bool = False  # a rope or joint that may pull past a centre of mass
 
     @property
+    def is_soft(self) -> bool:
+        """Whether its contacts give way under a load."""
+        return bool(self.surface.compliance > 0.0 or self.surface.hertz_stiffness > 0.0)
+
+    @property
     def resists_turning(self) -> bool:
         """Whether a contact of the pair passes on a torque of its own."""
         return bool(self.surface.torsional_friction > 0.0 or self.surface.rolling_friction > 0.0)

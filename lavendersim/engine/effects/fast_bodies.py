@@ -76,7 +76,7 @@ def _source_of_energy(facts: Facts) -> str:
     if facts.stabilisation_gain > 0.0:
         return "stabilisation pushes bodies apart"
     for pair in facts.pairs:
-        if pair.surface.compliance > 0.0:
+        if pair.is_soft:
             return f"{pair.a} and {pair.b} are springs"
         if pair.surface.restitution > 0.0 and facts.impacts == "captured":
             return f"{pair.a} and {pair.b} bounce from where a step begins, above the surface"

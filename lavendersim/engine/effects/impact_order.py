@@ -73,7 +73,7 @@ def decide(facts: Facts) -> Decision:
     if not meeting(facts):
         return Decision(False, "nothing can touch")
     only = facts.pairs[0]
-    rigid = only.surface.compliance == 0.0  # where a spring begins to push is met in time
+    rigid = not only.is_soft  # where a spring begins to push is met in time
     if facts.pair_count == 1 and only.shape_pair == "sphere_plane" and rigid:
         if slides_back(facts):
             return Decision(True, "the ball may slide, or roll, to a stop and back on the plane")
@@ -107,7 +107,7 @@ def make_order(spec: Spec) -> Any:
     from ..foreseen_impacts import make_follow, make_foresee, make_let_rebound, make_rebounds
     from ..impact_location import make_locate
     from ..impact_rows import make_keep_motion, make_keep_present, make_mark_impact
-    from ..row_terms import row_terms
+    from ..row_terms import make_is_soft, row_terms
     from . import made_once
 
     expect, depth = make_expect(spec), make_depth(spec)
@@ -116,6 +116,7 @@ def make_order(spec: Spec) -> Any:
     mark_impact, keep_present = make_mark_impact(spec), make_keep_present(spec)
     keep_motion = make_keep_motion(spec)
     edged = drop_flush is not None
+    is_soft: Any = make_is_soft(spec) if row_terms(spec).elastic else None
     turns = step_terms(spec).turns
     springs, ropes = row_terms(spec).elastic, row_terms(spec).taut
     bilateral, stopped = row_terms(spec).bilateral, row_terms(spec).stopped
@@ -191,7 +192,7 @@ def make_order(spec: Spec) -> Any:
                 if contact.phi < -OVERLAP:
                     deep = contact.phi < -depth(contact, bodies, motion, params)
                 if springs:
-                    deep = deep and state.pairs[contact.pair].compliance == 0.0
+                    deep = deep and not is_soft(state.pairs[contact.pair])
                 if ropes:  # too long by what its turn left: nothing is inside of anything
                     deep = deep and contact.span == 0.0
                 if stopped:

@@ -40,11 +40,12 @@ def make_mark_impact(spec: Spec) -> Any:
     """
     from ..approach import MEETS, make_slowest
     from ..impact_rows import make_meet_flush
-    from ..row_terms import row_terms
+    from ..row_terms import make_is_soft, row_terms
 
     slowest, springs = make_slowest(spec), row_terms(spec).elastic
     turns = step_terms(spec).turns
     meet_flush: Any = make_meet_flush(spec) if turns else None
+    is_soft: Any = make_is_soft(spec) if springs else None
 
     def mark_pairs(state, count, params):
         contacts, pairs, bodies, motion = state.contacts, state.pairs, state.bodies, state.motion
@@ -67,7 +68,7 @@ def make_mark_impact(spec: Spec) -> Any:
                     continue
                 takes_part = contact.phi <= max(TOUCHING, params.slop)
                 if springs:
-                    takes_part = takes_part and pairs[contact.pair].compliance == 0.0
+                    takes_part = takes_part and not is_soft(pairs[contact.pair])
                 if takes_part and contact.rate <= slowest(contact, bodies, motion):
                     contact.waits = 0
                     rows += 1

@@ -1,0 +1,182 @@
+"""A step's impulse by Hertz's law: the mean of its force over the way, its tangent, its energy."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+import pytest
+from interpreted import interpreted, records
+from plain_facts import one_row
+
+from lavendersim.engine.hertz_law import (
+    FLATTEST,
+    make_linearise,
+    make_push,
+    make_solve_by_tangents,
+    make_stored,
+    make_touch,
+    mean_force,
+)
+from lavendersim.engine.record_layout import allocate_velocities, contact_dtype
+from lavendersim.engine.solvers.solver import ContactSystem
+from lavendersim.engine.spec import Spec
+
+EULER = Spec(effects=("compliance", "contact_spring", "hertz_contact"))
+MEAN = EULER.including("contact_midpoint")
+SPECS = pytest.mark.parametrize("spec", [EULER, MEAN], ids=["Euler", "mean"])
+K, A, MASS, DT = 3e5, 0.7, 2.0, 0.002
+# Both ends of a step inside, outside, on the surface, or on either side of it.
+WAYS = [(0.003, 0.005), (0.005, 0.003), (0.002, 0.002), (0.0, 0.004), (0.004, 0.0)]
+WAYS += [(-0.001, 0.004), (0.004, -0.001), (-0.003, -0.001), (0.0, 0.0), (-0.002, 0.0)]
+DRAWN = np.random.default_rng(5)
+
+
+def row(depth: float = 0.003, v: float = -0.4, a: float = A, impulse: float = 0.0):
+    return one_row(
+        hertz_stiffness=K, dissipation=a, spring_v=v, phi=-depth, k_n=1.0 / MASS, gamma=0.0,
+        target=0.0, inv_k=0.0, lambda_n=impulse,
+    )  # fmt: skip
+
+
+def energy(depth: float) -> float:
+    return 0.4 * max(depth, 0.0) ** 2.5
+
+
+@pytest.mark.parametrize(("begin", "end"), WAYS)
+def test_its_force_is_the_mean_along_the_way(begin: float, end: float) -> None:
+    """By Gauss's quadrature of d^(3/2) between the parts where it is smooth."""
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    low, high = min(begin, end), max(begin, end)
+    inside = max(high, 0.0) - max(low, 0.0)
+    # With d = x^2 the integrand is a polynomial of x, of degree 4.
+    first, last = sqrt(max(low, 0.0)), sqrt(max(high, 0.0))
+    x = 0.5 * (first + last) + 0.5 * (last - first) * nodes
+    area = float(np.sum(weights * x**3 * 2.0 * x)) * 0.5 * (last - first)
+    expected = area / (high - low) if high > low else max(low, 0.0) ** 1.5
+    assert inside >= 0.0
+    found, _ = interpreted(mean_force)(begin, end)
+    assert found == pytest.approx(expected, rel=1e-13, abs=1e-18)
+
+
+@pytest.mark.parametrize(("begin", "end"), WAYS)
+def test_its_work_is_the_change_of_its_energy(begin: float, end: float) -> None:
+    found, _ = interpreted(mean_force)(begin, end)
+    missed = found * (end - begin) - (energy(end) - energy(begin))
+    assert abs(missed) < 1e-15 * max(energy(end), energy(begin), 1e-300)
+
+
+@pytest.mark.parametrize(("begin", "end"), [way for way in WAYS if max(way) > 0.0])
+def test_its_slope_is_that_of_differences(begin: float, end: float) -> None:
+    h = 1e-7
+    mean = interpreted(mean_force)
+    (below, _), (above, _), (_, slope) = (
+        mean(begin, end - h),
+        mean(begin, end + h),
+        mean(begin, end),
+    )
+    # h^2 of the third derivative, some d^(-3/2); where it has a corner h^(1/2) of the second.
+    assert slope == pytest.approx((above - below) / (2.0 * h), rel=1e-3)
+
+
+@SPECS
+@pytest.mark.parametrize("a", [0.0, A, 10.0])
+def test_its_impulse_falls_and_is_convex(spec: Spec, a: float) -> None:
+    """So that tangents lie below it and Newton's method finds it from anywhere."""
+    push, params = interpreted(make_push(spec)), one_row(dt=DT)
+    for _ in range(40):
+        contact = row(DRAWN.uniform(-0.002, 0.004), DRAWN.uniform(-2.0, 2.0), a)
+        at, other = DRAWN.uniform(-3.0, 3.0, 2)
+        (impulse, slope), (there, _) = push(contact, at, params), push(contact, other, params)
+        assert impulse >= 0.0
+        assert slope >= 0.0
+        assert there >= impulse - slope * (other - at) - 1e-12 * max(impulse, there)
+
+
+@SPECS
+def test_its_impulse_is_that_of_the_rule(spec: Spec) -> None:
+    push, contact = interpreted(make_push(spec)), row()
+    for v in (-0.3, 0.1, 0.5):
+        rate = -0.5 * (v - 0.4) if spec is MEAN else -v
+        end = 0.003 + DT * rate
+        force = (energy(end) - energy(0.003)) / (end - 0.003) if spec is MEAN else end**1.5
+        found, _ = push(contact, v, one_row(dt=DT))
+        # The difference of energies loses digits, up to energy/change of them.
+        assert found == pytest.approx(DT * K * force * (1.0 + A * rate), rel=1e-11)
+
+
+@SPECS
+def test_nothing_pulls_however_fast_it_leaves(spec: Spec) -> None:
+    assert interpreted(make_push(spec))(row(v=4.0), 4.0, one_row(dt=DT))[0] == 0.0
+
+
+@SPECS
+def test_its_row_is_the_tangent(spec: Spec) -> None:
+    """v + target + gamma lambda = 0 at the law's impulse, with its slope."""
+    push, touch, params = (
+        interpreted(make_push(spec)),
+        interpreted(make_touch(spec)),
+        one_row(dt=DT),
+    )
+    for v in (-0.5, 0.2):
+        contact = row()
+        impulse, slope = push(contact, v, params)
+        missed = touch(contact, v, params)
+        assert contact.gamma == pytest.approx(1.0 / slope, rel=1e-15)
+        assert v + contact.target + contact.gamma * impulse == pytest.approx(0.0, abs=1e-14)
+        # What an impulse of 0 is off, as the change of velocity that its row would answer with.
+        expected = impulse * contact.gamma / MASS / (1.0 / MASS + contact.gamma)
+        assert missed == pytest.approx(expected, rel=1e-12)
+    flat = row(depth=-1.0)
+    touch(flat, 0.0, params)
+    assert flat.gamma == 1.0 / MASS / FLATTEST
+
+
+def test_it_stores_two_fifths() -> None:
+    stored = interpreted(make_stored(MEAN))
+    assert stored(row(), 0.004) == pytest.approx(K * energy(0.004), rel=1e-14)
+    assert stored(row(), -0.004) == 0.0
+
+
+def linear_solve(system, workspace, params, counters, rows) -> None:
+    """One row of a ball on what does not move, from where it is: exact."""
+    contact, v = system.contacts[0], system.velocities[1]
+    w = v.vz + contact.target + contact.gamma * contact.lambda_n
+    impulse = max(contact.lambda_n - w / (1.0 / MASS + contact.gamma), 0.0)
+    v.vz += (impulse - contact.lambda_n) / MASS
+    contact.lambda_n = impulse
+    counters.sweeps = 1
+
+
+@SPECS
+@pytest.mark.parametrize("stiffness", [1e2, 1e6, 1e10, 1e14])
+@pytest.mark.parametrize("v", [-3.0, 0.0, 3.0])
+def test_solves_with_new_tangents_find_the_law(spec: Spec, stiffness: float, v: float) -> None:
+    contacts, velocities = np.zeros(1, contact_dtype(spec)), allocate_velocities(spec, 2)
+    contacts["b"], contacts["nz"], contacts["k_n"] = 1, 1.0, 1.0 / MASS
+    contacts["hertz_stiffness"], contacts["dissipation"] = stiffness, A
+    contacts["phi"], contacts["spring_v"], velocities["vz"][1] = -1e-4, v, v
+    system = ContactSystem(records(contacts), np.zeros(1, int), 1, None, records(velocities))
+    params = one_row(dt=DT, tolerance=1e-9)
+    counters = one_row(sweeps=0, not_converged=0)
+    interpreted(make_solve_by_tangents(spec, linear_solve))(system, None, params, counters, None)
+    row, v = records(contacts)[0], velocities["vz"][1]
+    impulse, slope = interpreted(make_push(spec))(row, v, one_row(dt=DT))
+    assert counters.not_converged == 0
+    # Far too deep, F of d^(3/2) has a tangent through d/3: 6 mm to 10 nm are 12, then it squares.
+    assert 1 <= counters.sweeps <= 18
+    # A thousandth of the tolerance as a velocity, and the round-off of the depth by the slope.
+    missed = 1e-12 + 1e-15 * (3.0 + 1e-4 / DT)
+    assert row.lambda_n == pytest.approx(impulse, rel=1e-12, abs=missed * (slope + MASS))
+
+
+def test_tangents_leave_linear_rows_alone_and_a_nan_shows() -> None:
+    contacts, velocities = np.zeros(2, contact_dtype(MEAN)), allocate_velocities(MEAN, 2)
+    contacts["b"], contacts["nz"], contacts["k_n"], contacts["gamma"] = 1, 1.0, 1.0, 0.3
+    linearise = interpreted(make_linearise(MEAN))
+    params = one_row(dt=DT)
+    assert linearise(records(contacts), 2, records(velocities), params) == (0.0, 0.0)
+    assert contacts["gamma"].tolist() == [0.3, 0.3]
+    contacts["hertz_stiffness"], velocities["vz"][1] = [K, 0.0], np.nan
+    missed, _ = linearise(records(contacts), 2, records(velocities), params)
+    assert np.isnan(missed)
