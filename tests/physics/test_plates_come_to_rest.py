@@ -1,8 +1,8 @@
 """A plate that is put down askew rocks, claps and slides to rest on a floor, and then stays.
 
-A cap touches a floor in points of its rim, where it meets it next: those of a plate that lies change
-from step to step. Once it rests nothing may keep it moving: steps are solved to 1e-9 m/s, and it
-lies within the slop of 1e-7 m.
+A cap touches a floor in points of its rim, where it meets it next: those of a plate that lies
+change from step to step. Once it rests nothing may keep it moving: steps are solved to 1e-9 m/s,
+and it lies within the slop of 1e-7 m.
 """
 
 from __future__ import annotations
