@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,8 +12,6 @@ from lavender_cli import printing
 from lavender_cli.run import AllowIncomplete, Runs
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from lavendersim.comparison import Comparison
     from lavendersim.comparison.compare import CellStates, MeasureChange
 
@@ -96,7 +95,16 @@ def _bold(text: str) -> str:
 
 
 def _change(name: str, a: Any, b: Any) -> str:
-    return f"{name}  {a} -> {b}"
+    return f"{name}  {_as_written(a)} -> {_as_written(b)}"
+
+
+def _as_written(value: Any) -> str:
+    """Return a value as a config has it: `{path: scene.bodies.ball.mass, values: [1, 2]}`."""
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key}: {_as_written(one)}' for key, one in value.items())}}}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_as_written, value))}]"
+    return str(value)
 
 
 def _measure(one: MeasureChange) -> str:

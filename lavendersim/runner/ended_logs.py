@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from lavendersim.trace import Trace
 
     from .cell_outcome import CellOutcome, EndedCell
+    from .cells_index import IndexRow
 
 COMPLETE: Final = "complete"
 
@@ -95,6 +96,29 @@ def whole_log(path: Path, outcome: CellOutcome) -> Trace:
     trace = open_trace(path, expected=ExpectedLog(digest=outcome.log))
     trace.verify()
     return trace
+
+
+def outcome_by_log(path: Path, row: IndexRow) -> CellOutcome:
+    """Return how a cell completed of which nothing is noted, from its log; what it took is lost.
+
+    TraceError where the log does not show that it completed, OSError where it cannot be read.
+    """
+    from lavendersim.trace import digest_of_closed, open_trace
+
+    from .accuracy import Accuracy
+    from .cell_outcome import CellOutcome
+
+    digest = digest_of_closed(path)
+    trace = open_trace(path, expected=row.expected)
+    if not trace.complete:
+        raise TraceError(f"{path}: {trace.status}")
+    if trace.config.engine is not None or trace.partly:
+        raise TraceError(f"{path}: it does not tell how far every step converged")
+    contact = trace.contact if trace.has("/contacts") else None
+    accuracy = Accuracy(tolerance=trace.config.numerics.tolerance)
+    accuracy = accuracy.after(trace.step, contact, trace.bodies)
+    steps = int(trace.step["step"][-1])
+    return CellOutcome(row.index, COMPLETE, steps, 0, 0, 0, accuracy, digest)
 
 
 def ended_in(shards: Sequence[Path], unmeasured: bool) -> dict[str, list[tuple[Path, EndedCell]]]:

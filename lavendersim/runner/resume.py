@@ -3,8 +3,8 @@
     newest run of the experiment -> its cells that ended -> logs that are whole -> done
 
 A cell is done when it completed, and its log is byte for byte the one that its run wrote, with the
-versions that are installed; one whose log was closed but not yet measured is measured now. All else
-is run again into the same directory, so that in the end it holds what a run holds that was never
+versions that are installed, or where no line says what it wrote, is whole by its own CRCs; one whose
+log was closed but not yet measured is measured now. All else is run again into the same directory, so that in the end it holds what a run holds that was never
 interrupted.
 """
 
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,13 +21,13 @@ from lavendersim.errors import TraceError
 from lavendersim.experiment import Experiment
 from lavendersim.trace.whole import INTERRUPTED
 
-from .ended_logs import COMPLETE, whole_log
+from .ended_logs import COMPLETE, outcome_by_log, whole_log
 from .leftovers import UNFINISHED
 from .run_directory import CONFIG, Run, list_runs
 from .run_index import ENDED, PENDING, kept_lines
 
 if TYPE_CHECKING:
-    from .cell_outcome import EndedCell
+    from .cell_outcome import CellOutcome, EndedCell
 
 
 def newest_run(experiment: Experiment, root: Path) -> Run | None:
@@ -77,20 +78,29 @@ def take_over(run: Run, logs: Collection[str], note: Callable[[str], None]) -> d
     Of those whose logs were closed and not measured, nothing is measured yet. For who holds the
     run's directory. note: receives how many are run again, and why.
     """
-    from .cell_outcome import ended_cells  # late: it needs numpy
+    from .cell_outcome import EndedCell, ended_cells, note_closed  # late: it needs numpy
 
     rows = {path.name: row for path, row in run.rows().items()}
     ended = ended_cells(run.path)
     done: dict[str, EndedCell] = {}
     again = Counter[str]()
+    closed: dict[Path, CellOutcome] = {}  # of which no line is left
     for name in sorted(logs):
-        why = _why_again(run.path / "cells" / name, rows[name].status, ended.get(name))
+        log, row = run.path / "cells" / name, rows[name]
+        if name not in ended and row.status in (PENDING, COMPLETE):
+            with suppress(TraceError, OSError):
+                closed[log] = outcome_by_log(log, row)
+                ended[name] = EndedCell(closed[log], {})
+        why = _why_again(log, COMPLETE if log in closed else row.status, ended.get(name))
         if why:
             again[why] += 1
         else:
             done[name] = ended[name]
     # Lines are appended to it: none may stand behind one that a kill has cut.
     write_whole(run.path / ENDED, kept_lines(run.path, done), flush=False)
+    for log, outcome in closed.items():
+        if log.name in done:
+            note_closed(log, outcome)
     for left in run.path.rglob(UNFINISHED):
         left.unlink()
     note(f"goes on with {run.path}: {len(done)} of {len(logs)} cells are done")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from lavendersim.trace.opening import open_trace
     from lavendersim.trace.reader import Trace
     from lavendersim.trace.recovery import RecoveryReport, recover
-    from lavendersim.trace.whole import ExpectedLog, LogDigest, check_closed
+    from lavendersim.trace.whole import ExpectedLog, LogDigest, check_closed, digest_of_closed
     from lavendersim.trace.writer import TraceWriter, Written
     from lavendersim.trace.written_trace import trace_of
 
@@ -28,6 +28,7 @@ _HOME = {
     "TraceWriter": "writer",
     "Written": "writer",
     "check_closed": "whole",
+    "digest_of_closed": "whole",
     "open_trace": "opening",
     "recover": "recovery",
     "trace_of": "written_trace",
@@ -42,6 +43,7 @@ __all__ = [
     "TraceWriter",
     "Written",
     "check_closed",
+    "digest_of_closed",
     "open_trace",
     "recover",
     "trace_of",

@@ -114,6 +114,16 @@ def check_bytes(path: Path, expected: LogDigest | None = None) -> None:
             raise TraceError(_another(path, f"the SHA-256 {found}", expected))
 
 
+def digest_of_closed(path: Path) -> LogDigest:
+    """Return the digest of a log of which none was kept. TraceError unless its own CRCs hold."""
+    check_bytes(path)
+    with path.open("rb") as stream:
+        crc = read_end(path, stream).crc
+        stream.seek(0)
+        sha256 = hashlib.file_digest(stream, "sha256").hexdigest()
+        return LogDigest(stream.tell(), crc, sha256)
+
+
 def _read(stream: BinaryIO, start: int, end: int) -> bytes:
     """Return bytes of a file; none where there is no such place."""
     if not 0 <= start <= end:

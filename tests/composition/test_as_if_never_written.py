@@ -126,7 +126,7 @@ def as_it_is() -> list[str]:
 
 @pytest.mark.parametrize(
     ("effects", "elsewhere"),
-    [(("drag",), False), (("contact_spring", "compliance"), True)],
+    [(("drag",), False), (("hertz_contact", "contact_spring", "compliance"), True)],
     ids=["drag", "compliance"],
 )
 def test_a_pruned_effect_leaves_no_instruction(

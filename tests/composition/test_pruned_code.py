@@ -29,7 +29,7 @@ from tests.thorough import THOROUGH
 # Effects that have no kernel in their own file: they widen others, or theirs stand elsewhere.
 NO_KERNEL = {
     *("broad_phase", "contact_torque", "frictionless_contact", "kinematic", "midpoint", "newton"),
-    *("joint_stop", "overlooked_points", "packed_sweeps"),
+    *("hertz_contact", "joint_stop", "overlooked_points", "packed_sweeps"),
 }
 # Whose code is more or less by what the compiler inlines: a body that is called from one place is
 # copied there, the same body beside another (`frictionless_contact`) is called. A condition more

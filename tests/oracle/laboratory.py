@@ -25,7 +25,8 @@ from tests.made_cells import NUMERICS
 # Effects that put another law in a law's place: no coefficient of theirs takes them away.
 OTHER_LAWS = {
     *("broad_phase", "capture_in_sweeps", "fast_bodies", "impact_energy", "impact_time"),
-    *("contact_midpoint", "contact_spring", "error_control", "impact_order", "midpoint", "newton"),
+    *("contact_midpoint", "contact_spring", "error_control", "hertz_contact", "impact_order"),
+    *("midpoint", "newton"),
     *("least_norm", "overlooked_points", "pairwise_impacts", "sleeping", "sliding_stops"),
     *("joint", "joint_stop", "motor"),  # rows without a cone, beside which none are packed
     "speculative",

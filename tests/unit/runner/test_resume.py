@@ -121,6 +121,37 @@ def test_a_line_that_a_kill_has_cut_hides_none_behind_it(drops: Path, tmp_path: 
     assert contents(found) == whole
 
 
+@pytest.mark.parametrize("lost", [slice(0), slice(2)], ids=["every line", "all but two"])
+def test_logs_of_which_no_line_is_left_are_not_run_again(
+    drops: Path, tmp_path: Path, lost: slice, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = contents(run(drops, tmp_path / "whole").run)
+    left = unfinished(drops, tmp_path / "runs")
+    lines = (left.path / "ended.jsonl").read_text().splitlines(keepends=True)
+    (left.path / "ended.jsonl").write_text("".join(lines[lost]))
+    monkeypatch.setattr("lavendersim.runner.executor.run_and_measure", None)
+    found, said = resumed(drops, tmp_path / "runs")
+    assert said[0] == f"goes on with RUNS/{left.path.name}: 3 of 3 cells are done"
+    assert said[1].endswith("measured now: the log was closed")
+    assert contents(found) == whole
+
+
+@pytest.mark.parametrize("harm", [cut, flip])
+def test_a_log_that_is_not_whole_and_has_no_line_is_made_again(
+    drops: Path, tmp_path: Path, harm: Callable[[Path], None]
+) -> None:
+    whole = contents(run(drops, tmp_path / "whole").run)
+    left = unfinished(drops, tmp_path / "runs")
+    (left.path / "ended.jsonl").unlink()
+    harm(left.cells[1].path)
+    found, said = resumed(drops, tmp_path / "runs")
+    assert said[1:] == [
+        "2 measured now: the log was closed",
+        "1 run again: it was not noted how it ended",
+    ]
+    assert contents(found) == whole
+
+
 # Worst states and their times, and a measure that is no number.
 CHECKED = """\
 always: {penetration: 1e-9, stop: false}
@@ -144,8 +175,8 @@ def test_logs_that_were_closed_and_not_measured_are_not_run_again(
     assert contents(found) == whole
 
 
-def test_a_line_of_an_older_version_does_not_do(drops: Path, tmp_path: Path) -> None:
-    """It says that the log was closed, and not in how many steps."""
+def test_a_line_of_an_older_version_does_as_none(drops: Path, tmp_path: Path) -> None:
+    """It says that the log was closed, and not in how many steps: the log does."""
     whole = contents(run(drops, tmp_path / "whole").run)
     left = unfinished(drops, tmp_path / "runs")
     rows = [json.loads(line) for line in (left.path / "ended.jsonl").read_text().splitlines()]
@@ -156,7 +187,7 @@ def test_a_line_of_an_older_version_does_not_do(drops: Path, tmp_path: Path) -> 
                 row.pop(key, None)
     (left.path / "ended.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
     found, said = resumed(drops, tmp_path / "runs")
-    assert said[1:] == ["1 run again: it was not noted how it ended"]
+    assert said[1:] == ["1 measured now: the log was closed"]
     assert contents(found) == whole
 
 
