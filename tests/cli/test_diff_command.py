@@ -59,7 +59,7 @@ def test_cells_of_one_sweep_alone_are_listed(one: Path, tmp_path: Path) -> None:
     # As the config has them, an axis that one alone has included.
     less = DRAWN.replace(DRAWN[DRAWN.index("sweep:") : DRAWN.index("measure:")], "")
     text = verb("diff", other, made(less.replace("series: e", ""), tmp_path)).stdout
-    assert ", values: [0.5, 0.6]} -> (absent)" in " ".join(text.split())
+    assert ", values: [0.5, 0.6]}} -> (absent)" in " ".join(text.split())
 
 
 def test_runs_of_other_axes_are_paired_where_each_has_one_cell(tmp_path: Path) -> None:
