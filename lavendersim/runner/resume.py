@@ -3,9 +3,9 @@
     newest run of the experiment -> its cells that ended -> logs that are whole -> done
 
 A cell is done when it completed, and its log is byte for byte the one that its run wrote, or where
-no line says what it wrote, is whole by its own CRCs; with the versions that are installed. One whose
-log was closed but not yet measured is measured now. All else is run again into the same directory,
-so that in the end it holds what a run holds that was never interrupted.
+no line says what it wrote, is whole by its own CRCs; with the versions that are installed. One
+whose log was closed but not yet measured is measured now. All else is run again into the same
+directory, so that in the end it holds what a run holds that was never interrupted.
 """
 
 from __future__ import annotations
