@@ -310,7 +310,6 @@ def make_displace(spec: Spec) -> Any:
                 if uneven:
                     even = is_round(body)
                 if even and lasting:
-                    half = 0.5 * dt
                     turn(body, half * (m.wx + v.wx), half * (m.wy + v.wy), half * (m.wz + v.wz))
                     return True
                 if even:
@@ -319,8 +318,7 @@ def make_displace(spec: Spec) -> Any:
                     if lasting:
                         return turn_in_halves(body, v, m, dt)
                     return integrate_rotation(body, v, dt)
-                # Impulses changed its spin at the middle, and so its turn. What jumps turns as its
-                # contacts reckon, with the spin after them.
+                # Impulses changed its spin at the middle; what jumps turns with that after them.
                 mean = Vec3(m.mean_x, m.mean_y, m.mean_z)
                 spin = mean if lasting else Vec3(v.wx, v.wy, v.wz)
                 v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
@@ -385,9 +383,7 @@ def make_integrate(spec: Spec) -> Any:
                 if projects:
                     if moved:
                         u = pseudo[i]
-                        body.x += u.vx
-                        body.y += u.vy
-                        body.z += u.vz
+                        body.x, body.y, body.z = body.x + u.vx, body.y + u.vy, body.z + u.vz
                         if torque:
                             turn(body, u.wx, u.wy, u.wz)
                 # x - x is 0 for finite numbers only; one sum tests them all. Speeds enter squared:

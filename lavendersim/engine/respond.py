@@ -191,6 +191,9 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
         lasts = True
         if ordered:
             lasts = params.dt > INSTANT
+        if overlooks:
+            unfound = counters.midpoint_not_converged
+            unturned = counters.gyroscopic_not_converged
         if beside:
             springs = workspace.beside
             springs.before[0] = counters.midpoint_not_converged
@@ -207,7 +210,9 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                     classify(contacts, count, motion, params)
                 poses = workspace.middle.poses if midway else bodies
                 cut = look_over(state, poses, workspace.overlooked, params)
-                if cut > 0.0:
+                if cut > 0.0:  # what is made again has not been
+                    counters.midpoint_not_converged = unfound
+                    counters.gyroscopic_not_converged = unturned
                     if centred:
                         if midway:
                             stand_up(bodies, poses)

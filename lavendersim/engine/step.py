@@ -255,6 +255,8 @@ def make_advance(spec: Spec) -> Any:
                     if overlooks:
                         if cut > 0.0:
                             undo(velocities, motion)
+                            if linked and keeps:
+                                counters.spring_not_converged = unfound
                             if iterates:
                                 forget_limits(workspace.collision)
                             params.dt, longest, again = params.timestep, cut, True
