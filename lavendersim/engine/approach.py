@@ -137,12 +137,15 @@ def make_rate(spec: Spec) -> Any:
 
 def make_approach(spec: Spec) -> Any:
     """Return `kernel(contact, bodies, motion) -> v`: rate of its gap as the part begins [m/s]."""
-    rate = make_rate(spec)
+    rate, swept = make_rate(spec), row_terms(spec).swept
 
     def approach(contact, bodies, motion):
         at = position(contact)
         arm_a = minus(at, position(bodies[contact.a]))
         arm_b = minus(at, position(bodies[contact.b]))
+        if swept:  # it is where B will be across n
+            aside = Vec3(contact.tangential_x, contact.tangential_y, contact.tangential_z)
+            arm_b = minus(arm_b, aside)
         return rate(normal(contact), motion[contact.a], motion[contact.b], arm_a, arm_b)
 
     return kernel(approach, spec)

@@ -172,6 +172,8 @@ def make_locate(spec: Spec) -> Any:
                 stride = STRIDE * left
                 if rate * stride < phi:
                     stride = phi / rate if rate * left > phi else left
+                elif v < 0.0:  # the shortest stride could pass what they near
+                    stride = min(stride, -phi / v)
                 t = min(t + stride, left)
                 continue
             before = t
