@@ -13,6 +13,7 @@ OTHER_LAWS = {
     *("midpoint", "contact_midpoint", "contact_spring", "impact_time", "impact_order"),
     *(
         "speculative",
+        "hertz_contact",
         "newton",
         "least_norm",
         "fast_bodies",
