@@ -21,6 +21,7 @@ from .approach import (
     make_approach,
     make_change_ahead,
     make_nearest_rate,
+    relative_velocity,
 )
 from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
@@ -28,15 +29,19 @@ from .collide.records import put_normal
 from .compile import kernel, separate
 from .effects import has_hook, made_once
 from .integrate import make_turn
-from .records import INSTANT, TOUCHING
+from .records import INSTANT, PLANE, TOUCHING
 from .spec import Spec
 from .step_terms import step_terms
+from .vectors import length
 
 # Looks at the pair: Newton's steps find a meeting in some five; those of bodies that are followed
 # are 1/STRIDE at most, and halving a step of 1 s down to what INSTANT tells apart takes 40.
 PASSES = 80
 # Shortest, of what is left of the step, in which bodies that part are looked at again.
 STRIDE = 1.0 / 32.0
+# A stride in which bodies move by more than this share of the smaller could pass all of a meeting
+# that glances: it ends where surfaces that near each other would meet [-].
+PASSED = 0.1
 # Earliest meeting [s]: a part of the step before it takes time, or what forces do in it is lost.
 SOONEST = 2.0 * INSTANT
 # They meet where they are nearer than this [m]: inside of TOUCHING, so that the part that ends
@@ -103,11 +108,14 @@ def make_locate(spec: Spec) -> Any:
         owner_i, owner_j = i, j
         if compound:
             owner_i, owner_j = bodies[i].owner, bodies[j].owner
+        ma, mb = motion[owner_i], motion[owner_j]
         kept[A], kept[B] = bodies[owner_i], bodies[owner_j]
         kept[PART_A], kept[PART_B] = bodies[i], bodies[j]
+        speed, size = length(relative_velocity(ma, mb)), bodies[j].bound
+        if bodies[i].shape != PLANE:
+            size = min(bodies[i].bound, size)
         spun[A], spun[B] = velocities[owner_i], velocities[owner_j]
         left = params.dt
-        ma, mb = motion[owner_i], motion[owner_j]
         margin = TOUCHING + ma.reach + mb.reach
         t, when, late = ahead.due, NEVER, False
         marches, own = ahead.located == ELSEWHERE, ahead.located == GUESSED
@@ -172,7 +180,7 @@ def make_locate(spec: Spec) -> Any:
                 stride = STRIDE * left
                 if rate * stride < phi:
                     stride = phi / rate if rate * left > phi else left
-                elif v < 0.0:  # the shortest stride could pass what they near
+                elif v < 0.0 and stride * speed > PASSED * size:
                     stride = min(stride, -phi / v)
                 t = min(t + stride, left)
                 continue
