@@ -101,6 +101,7 @@ def _closed(names: set[str], numerics: dict[str, Any]) -> tuple[str, ...]:
 
 # Effects that no scene requires, and why; all others are (`test_fuzz.py`).
 NOT_DRAWN = {
+    "hertz_contact": "no compliance may be beside it; see tests/physics/test_hertz_contacts.py",
     "capture_in_sweeps": "a mistake that is made on purpose, which breaks laws",
     "error_control": "ends a run where no substep is short enough; `test_error_control.py`",
 }
@@ -108,7 +109,6 @@ NOT_DRAWN = {
 FORCED = {
     "broad_phase": "of thousands of pairs; here the tree is made for a few",
     "packed_sweeps": "of many bodies; here lanes are packed for a few",
-    "hertz_contact": "no compliance may be beside it; see tests/physics/test_hertz_contacts.py",
     "problem_log": "few scenes can be written as FCLIB files: none is asked for",
     "velocity_log": "columns of states that others have",
 }
