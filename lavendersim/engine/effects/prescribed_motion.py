@@ -7,7 +7,8 @@ they carry: with their new velocity, then the mean of the step, which leads ther
 mean of old and new (`midpoint_contact`), then those of the step's two ends, each less h^2/12 of its
 second derivative, h the length of the step. Their mean leads there but for h^5/120 of the fifth
 derivative of the place, and a step begins with what the last one ended with: a contact that lasts
-sees no jump (Euler and Maclaurin).
+sees no jump (Euler and Maclaurin). In substeps (`error_control`), whose lengths differ, nothing is
+taken off: velocities that depend on the length would be counted as errors of a run at every one.
 """
 
 from collections.abc import Iterator
@@ -148,11 +149,14 @@ def make_ends(spec):
     from ..vectors import Vec3, cross, plus, scaled
 
     turns, rates = step_terms(spec).turns, make_rates(spec)
+    substeps = step_terms(spec).substeps
 
     def ends(drive, knots, t, arm, after, h):
         # Velocity of the centre and spin of one end, less h^2/12 of their second derivatives; the
         # spin with h^2/12 of its cube more, by which Cayley's map turns less.
         share = h * h / 12.0
+        if substeps:
+            share = 0.0
         first, second, third = rates(drive, knots, t, after)
         flat = first - share * third
         v = Vec3(flat * drive.dx, flat * drive.dy, flat * drive.dz)
