@@ -306,7 +306,7 @@ class ContactColumns:
         known = [part.poses for part in parts if part.poses is not None]
         poses = [pose for one in known for pose in (one.before[None], one.following)]
         positions = [pose[:, :, :3] for pose in poses]
-        rows = np.repeat(np.arange(len(counts)), counts)
+        rows = np.arange(len(counts)).repeat(counts)
         return Starts(self._bodies, np.concatenate(positions).astype(np.float64), rows)
 
 
