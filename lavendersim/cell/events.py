@@ -78,9 +78,11 @@ AnyEvent = CellEvent | CellGravity | CellTimestep
 
 def changes_of_bodies(events: Iterable[AnyEvent]) -> list[CellEvent]:
     """Return the events of bodies by their time; those of one time in the order of the config."""
-    return sorted((one for one in events if isinstance(one, CellEvent)), key=lambda one: one.at)
+    found = [one for one in events if isinstance(one, CellEvent)]
+    return sorted(found, key=lambda one: one.at) if found else found
 
 
 def changes_of_gravity(events: Iterable[AnyEvent]) -> list[CellGravity]:
     """Return the changes of gravity by their time; those of one time in the order of the config."""
-    return sorted((one for one in events if isinstance(one, CellGravity)), key=lambda one: one.at)
+    found = [one for one in events if isinstance(one, CellGravity)]
+    return sorted(found, key=lambda one: one.at) if found else found

@@ -12,9 +12,9 @@ Matrix = tuple[Vector3, Vector3, Vector3]  # rows
 
 def unit(vector: Numbers) -> Numbers:
     """Return the vector at length 1; a vector that has it already is returned bit for bit."""
-    largest = max(abs(component) for component in vector)
+    largest = max(map(abs, vector))
     scaled = [component / largest for component in vector]  # no overflow, no underflow
-    length = largest * math.sqrt(sum(component * component for component in scaled))
+    length = largest * math.sqrt(sum([component * component for component in scaled]))
     if abs(length - 1.0) <= 1e-15:
         return vector
     length = length / largest

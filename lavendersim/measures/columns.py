@@ -36,9 +36,11 @@ def rows_of_steps(step: Rows, contacts: Rows) -> np.ndarray:
     Each step is looked for among the contacts, not each contact among the steps: of thousands of
     contacts a step has hundreds.
     """
-    ends = np.searchsorted(contacts["step"], step["step"], "right")
-    begins = np.concatenate(([0], ends[:-1]))
-    return np.repeat(np.arange(len(step)), ends - begins)
+    ends = contacts["step"].searchsorted(step["step"], "right")
+    counts = ends.copy()
+    counts[1:] -= ends[:-1]
+    rows: np.ndarray = np.arange(len(step)).repeat(counts)
+    return rows
 
 
 def contact_parts(trace: Trace) -> Iterator[Rows]:
@@ -152,7 +154,9 @@ def clearance_by_step(trace: Trace, body: str, plane: str) -> Floats:
 
 def runs_of(flags: np.ndarray) -> list[tuple[int, int]]:
     """Return [first, last] of every unbroken run of true flags."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
+    padded = np.zeros(len(flags) + 2, bool)
+    padded[1:-1] = flags
+    (edges,) = (padded[1:] != padded[:-1]).nonzero()
     return [(int(first), int(end) - 1) for first, end in zip(edges[::2], edges[1::2], strict=True)]
 
 

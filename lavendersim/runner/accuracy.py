@@ -64,7 +64,7 @@ class Accuracy(NamedTuple):
         for part in PARTS:
             if f"{part}_contact" not in (step.dtype.names or ()) or len(step) == 0:
                 continue
-            row = step[int(np.argmax(step[part]))]  # the first NaN, where there is one
+            row = step[int(step[part].argmax())]  # the first NaN, where there is one
             value, before = float(row[part]), found.get(part)
             if before is None or value > before.value or np.isnan(value):
                 bodies = _pair(contact, int(row["step"]), int(row[f"{part}_contact"]), names)
@@ -76,5 +76,5 @@ def _pair(contact: np.ndarray, step: int, index: int, names: Sequence[str]) -> s
     """Return the names of the bodies of a step's logged contact."""
     if index < 0:
         return ""
-    row = contact[np.searchsorted(contact["step"], step) + index]
+    row = contact[contact["step"].searchsorted(step) + index]
     return f"{names[row['body_a']]} and {names[row['body_b']]}"

@@ -73,10 +73,12 @@ class Bounds:
         self.worst.not_reported = self._checks.not_reported
         first: tuple[int, CheckedSteps] | None = None
         for check in checked if self._stops else ():
-            beyond = np.flatnonzero(check.numbers[again:] > check.bound)
-            if check.check in STOPPING and len(beyond):
-                row = int(beyond[0]) + again
-                first = (row, check) if first is None or row < first[0] else first
+            if check.check not in STOPPING:
+                continue
+            beyond = check.numbers[again:] > check.bound
+            row = int(beyond.argmax())  # the first of them, if there is one
+            if beyond[row] and (first is None or row + again < first[0]):
+                first = (row + again, check)
         end = len(step) - diverged
         if first is not None:
             end = min(end, first[0] + 1)

@@ -19,6 +19,7 @@ from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING
 from lavendersim.engine.sources import source_hash
 from lavendersim.engine.step_doubling import MOST_SUBSTEPS
 from lavendersim.engine.together import EngineAdvance, advance_together
+from lavendersim.garbage import uncollected
 from lavendersim.measures import applies, outcomes_of
 from lavendersim.measures.always import WorstStates
 from lavendersim.measures.specs.always import Always
@@ -198,6 +199,13 @@ def run_and_measure(jobs: Sequence[CellJob], began: Began | None = None) -> list
     kernel of the first is there.
     """
     keep_freed_memory()
+    if len(jobs) == 1:  # it may be long
+        return _run_and_measure(jobs, began)
+    with uncollected():  # of short cells next to nothing is in circles
+        return _run_and_measure(jobs, began)
+
+
+def _run_and_measure(jobs: Sequence[CellJob], began: Began | None) -> list[EndedCell]:
     simulated = _simulate(jobs, began, lambda job, outcome: note_closed(job.path, outcome))
     raise_noted()
     ended = []

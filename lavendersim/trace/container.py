@@ -15,7 +15,6 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
-from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -50,6 +49,7 @@ COMPRESSION_LEVEL = 1
 LONG = 64 * 1024  # [byte] of a record that is not copied to be written with others
 
 _of_thread = threading.local()
+_MESSAGE_INDEX = struct.Struct("<BQHI").pack  # opcode, length, channel, size of the entries
 
 # one entry of a MessageIndex
 INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
@@ -157,8 +157,8 @@ def closed(payload: bytes | memoryview, messages: Iterable[Messages]) -> Closed:
 def message_index(messages: Messages) -> bytes:
     """Return a MessageIndex record; mcap's own writes entry by entry."""
     entries = messages.entries.astype(INDEX_ENTRY, copy=False).tobytes()
-    body = struct.pack("<HI", messages.channel, len(entries)) + entries
-    return struct.pack("<BQ", Opcode.MESSAGE_INDEX, len(body)) + body
+    size = len(entries)
+    return _MESSAGE_INDEX(Opcode.MESSAGE_INDEX, 6 + size, messages.channel, size) + entries
 
 
 class Container:
@@ -287,9 +287,17 @@ class Container:
 
 def _joined(pieces: Iterable[bytes]) -> Iterator[bytes]:
     """Yield pieces in their order: long ones as they are, short ones in one."""
-    for long, alike in groupby(pieces, lambda piece: len(piece) > LONG):
-        group = list(alike)
-        yield from group if long else (b"".join(group),)
+    short: list[bytes] = []
+    for piece in pieces:
+        if len(piece) <= LONG:
+            short.append(piece)
+            continue
+        if short:
+            yield b"".join(short)
+            short = []
+        yield piece
+    if short:
+        yield b"".join(short)
 
 
 def index_of(chunk: Chunk, offset: int, length: int) -> ChunkIndex:

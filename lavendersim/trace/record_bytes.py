@@ -157,14 +157,15 @@ _AT_ONCE: Final[Mapping[type[McapRecord], Callable[[Any], list[bytes]]]] = {
 
 def pieces_of(*records: McapRecord) -> list[bytes]:
     """Return records as bytes in pieces; of a chunk the last is its data."""
-    builder: Any = _Pieces()
+    pieces: list[bytes] = []
     for record in records:
         at_once = _AT_ONCE.get(type(record))
         if at_once is None:
+            builder: Any = _Pieces()
             record.write(builder)
+            pieces += builder.pieces
         else:
-            builder.pieces += at_once(record)
-    pieces: list[bytes] = builder.pieces
+            pieces += at_once(record)
     return pieces
 
 

@@ -38,7 +38,7 @@ def body_table(shapes: Iterable[CellShape]) -> Floats | None:
         elif isinstance(shape, Plane):
             plane = half_space(shape)
             row[NORMAL], row[OFFSET] = plane.normal, plane.offset
-    return table if np.any(table[:, RADIUS] > 0.0) else None
+    return table if (table[:, RADIUS] > 0.0).any() else None
 
 
 class Starts(NamedTuple):

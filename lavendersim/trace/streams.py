@@ -56,19 +56,19 @@ class Chunk:
         self.data = scratch("chunk", (len(prologue) + size,), np.uint8)
         self.data[: len(prologue)] = np.frombuffer(prologue, np.uint8)
         self.end = len(prologue)  # of what is filled
-        self._entries: dict[int, list[NDArray[np.uint64]]] = {}
+        self._entries: dict[int, list[NDArray[Any]]] = {}
 
     def note(self, topic: str, heads: Rows, starts: Rows) -> None:
         """Note where messages stand; heads: words of their steps."""
-        entries = np.empty((len(starts), 2), np.uint64)  # words of INDEX_ENTRY
-        entries[:, 0], entries[:, 1] = heads[:, TIME], starts
+        entries = np.empty(len(starts), INDEX_ENTRY)
+        entries["time"], entries["offset"] = heads[:, TIME], starts
         self._entries.setdefault(layout.CHANNELS[topic], []).append(entries)
 
     def filled(self) -> Laid:
         """Return bytes and index."""
         assert self.end == len(self.data), "a chunk has other bytes than were counted"
         messages = [
-            Messages(channel, np.concatenate(parts).view(INDEX_ENTRY)[:, 0])
+            Messages(channel, parts[0] if len(parts) == 1 else np.concatenate(parts))
             for channel, parts in sorted(self._entries.items())
         ]
         return self.data.data, messages
@@ -306,7 +306,7 @@ class ContactColumns:
         known = [part.poses for part in parts if part.poses is not None]
         poses = [pose for one in known for pose in (one.before[None], one.following)]
         positions = [pose[:, :, :3] for pose in poses]
-        rows = np.repeat(np.arange(len(counts)), counts)
+        rows = np.arange(len(counts)).repeat(counts)
         return Starts(self._bodies, np.concatenate(positions).astype(np.float64), rows)
 
 

@@ -103,8 +103,10 @@ class WrittenTrace(Trace):
                 continue
             if not recorded.all():
                 contacts = contacts[np.isin(contacts["step"], steps[recorded])]
-            counts = np.diff(np.searchsorted(contacts["step"], [*steps.tolist(), steps[-1] + 1]))
-            yield contacts, np.repeat(decode.seconds(block.step["time_ns"]), counts)
+            ends = contacts["step"].searchsorted(steps, "right")  # of each step, by rising step
+            counts = ends.copy()
+            counts[1:] -= ends[:-1]
+            yield contacts, decode.seconds(block.step["time_ns"]).repeat(counts)
 
 
 @lru_cache(maxsize=64)

@@ -60,7 +60,8 @@ class Place:
 
     def written(self, key: str) -> Mark | None:
         """Return where a key stands that is written; null writes nothing."""
-        return None if self.get(key).content is None else self.key(key)
+        written = self.node.entries.get(key)
+        return None if written is None or written.content is None else self.key(key)
 
     def given(self, keys: Iterable[str]) -> Iterator[tuple[str, Mark]]:
         """Yield those of some keys that are written, and where."""

@@ -51,7 +51,7 @@ def first_apex(spec: specs.FirstApex, trace: Trace) -> float:
     begin = runs[0][0]
     heights = clearance_by_step(trace, spec.body, spec.above)[begin:]
     inner = heights[1:-1]
-    peaks = np.flatnonzero((inner > 0.0) & (inner >= heights[:-2]) & (inner > heights[2:]))
+    (peaks,) = ((inner > 0.0) & (inner >= heights[:-2]) & (inner > heights[2:])).nonzero()
     if len(peaks):
         one_timestep(trace, begin + int(peaks[0]), begin + int(peaks[0]) + 2, "first_apex")
         return parabola_vertex(*(float(height) for height in heights[peaks[0] : peaks[0] + 3]))
