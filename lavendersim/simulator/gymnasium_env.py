@@ -30,9 +30,9 @@ class ContactEnv(gymnasium.Env[Any, Any]):
     """Bodies in contact, acted on by forces, torques and velocities within declared limits.
 
     config, cell, actions: those of `Simulator`. steps_per_action: timesteps that an action acts
-    over. normalised: actions are shares of their limits, from -1 to 1, as most learners expect them;
-    else they have their units. reward: of an observation and its info, 0 without it. terminated: whether an episode ends
-    there, beside where a body's state is no longer finite.
+    over. normalised: actions are shares of their limits, from -1 to 1, as most learners expect
+    them; else they have their units. reward: of an observation and its info, 0 without it.
+    terminated: whether an episode ends there, beside where a body's state is no longer finite.
 
     An observation has, a row per body in the config's order, `position` [m], `orientation` (w x y
     z), `velocity` [m/s], `angular_velocity` [rad/s] and `contact`, the sums of
