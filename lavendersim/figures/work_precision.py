@@ -81,7 +81,8 @@ def compose(table: CostTable) -> Figure:
     above = rows * HEIGHT if rows > 1 else ONLY_HEIGHT
     below = BELOW_HEIGHT if shows_timesteps(table) else LEGEND_HEIGHT
     figure = blank(Page(_caption(table), WIDTH, above + below, table.question, gaps=GAPS))
-    upper, lower = figure.subfigures(2, 1, height_ratios=(above, below))
+    parts: Any = figure.subfigures(2, 1, height_ratios=(above, below))
+    upper, lower = parts
     panels = upper.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     drawn = list(panels.ravel())[: len(looks.members)]
     for axes, member in zip(drawn, looks.members, strict=True):
