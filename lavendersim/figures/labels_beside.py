@@ -33,9 +33,9 @@ def draw_labels_beside(axes: Any, ends: Sequence[LineEnd], height: float) -> Non
         return
     to_axes = axes.transData + axes.transAxes.inverted()
     x = axes.get_xlim()[1]
-    wanted = [float(to_axes.transform((x, end.value))[1]) for end in ends]
+    sought = [float(to_axes.transform((x, end.value))[1]) for end in ends]
     begin, end_of_leader, text = LEADER
-    for end, at, place in zip(ends, wanted, apart(wanted, LINE / height), strict=True):
+    for end, at, place in zip(ends, sought, apart(sought, LINE / height), strict=True):
         leader = {"transform": axes.transAxes, "clip_on": False, "linewidth": 1.1, **end.look}
         axes.plot([begin, end_of_leader], [at, place], **leader)
         axes.text(
@@ -49,14 +49,14 @@ def draw_labels_beside(axes: Any, ends: Sequence[LineEnd], height: float) -> Non
         )
 
 
-def apart(wanted: Sequence[float], gap: float) -> list[float]:
-    """Return places at least `gap` apart, in the order of the wanted ones and nearest to them.
+def apart(sought: Sequence[float], gap: float) -> list[float]:
+    """Return places at least `gap` apart, in the order of the sought ones and nearest to them.
 
     Between 0 and 1 where there is room for all.
     """
-    order = np.argsort(wanted, kind="stable")
-    pools: list[list[float]] = []  # sum and count of wanted places, less the gaps below them
-    for place in np.asarray(wanted, float)[order] - gap * np.arange(len(order)):
+    order = np.argsort(sought, kind="stable")
+    pools: list[list[float]] = []  # sum and count of sought places, less the gaps below them
+    for place in np.asarray(sought, float)[order] - gap * np.arange(len(order)):
         pools.append([float(place), 1.0])
         while len(pools) > 1 and pools[-2][0] * pools[-1][1] > pools[-1][0] * pools[-2][1]:
             total, count = pools.pop()

@@ -57,9 +57,13 @@ def compile_times(
             max_tasks_per_child=1,
         ) as pool:
             waiting = {pool.submit(compile_anew, config, spec): spec for spec in missing}
-            for done, future in enumerate(as_completed(waiting), start=1):
-                times[waiting[future]] = future.result()
-                progress(done, len(missing))
+            try:
+                for done, future in enumerate(as_completed(waiting), start=1):
+                    times[waiting[future]] = future.result()
+                    progress(done, len(missing))
+            except BaseException:  # Ctrl-C waits for what is being compiled, and for no other
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
     return times
 
 

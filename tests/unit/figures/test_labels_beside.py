@@ -27,16 +27,16 @@ def test_labels_stay_beside_the_axis() -> None:
 
 def test_moves_are_the_least_squares_of_another_method() -> None:
     """SLSQP ends within its ftol of the least sum: 1e-12 of squares is 1e-6 of places."""
-    wanted = np.sort(np.random.default_rng(5).uniform(0.2, 0.8, 6))
+    sought = np.sort(np.random.default_rng(5).uniform(0.2, 0.8, 6))
     apart_by_gap = {"type": "ineq", "fun": lambda places: np.diff(places) - GAP}
     best = minimize(
-        lambda places: ((places - wanted) ** 2).sum(),
+        lambda places: ((places - sought) ** 2).sum(),
         0.1 + 0.15 * np.arange(6),
         constraints=[apart_by_gap],
         options={"ftol": 1e-13, "maxiter": 500},
     )
     assert best.success
-    assert apart(list(wanted), GAP) == pytest.approx(list(best.x), abs=1e-5)
+    assert apart(list(sought), GAP) == pytest.approx(list(best.x), abs=1e-5)
 
 
 def test_a_label_stands_at_its_leaders_end_and_the_leader_begins_at_its_line() -> None:

@@ -76,3 +76,24 @@ def test_what_is_compiled_first_is_said_where_it_takes_more_than_a_minute(
     kept.clear()
     said = "4 engines are compiled first, once: some 1 min of a processor"
     assert module.compiling_ahead(specs * 2) == said
+
+
+def test_what_is_interrupted_waits_for_no_engine_that_nothing_compiles_yet(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ends: list[dict[str, bool]] = []
+    shutdown = Pool.shutdown
+
+    def ended(pool: Pool, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        ends.append({"wait": wait, "cancel_futures": cancel_futures})
+        shutdown(pool, wait)
+
+    def interrupted(done: int, of: int) -> None:
+        if done == 1:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_known", lambda config, spec: None)
+    monkeypatch.setattr(Pool, "shutdown", ended)
+    with pytest.raises(KeyboardInterrupt):
+        compile_times(CONFIG, SPECS, 1, interrupted)
+    assert ends[0] == {"wait": False, "cancel_futures": True}
