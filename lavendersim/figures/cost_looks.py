@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple, get_args
 from matplotlib.lines import Line2D
 
 from lavendersim.cell.choices import Solver
-from lavendersim.figures.style import DARK, GREY, LOOKS, Look
+from lavendersim.figures.style import DARK, LOOKS, Look
 from lavendersim.measures.cost_table import CostRow, CostTable
 
 # Every solver has its colour in every figure; black is that of the front and of what failed.
@@ -26,6 +26,7 @@ RINGS: Final = {
     "specified": {"marker": "o", "markersize": 14, "markeredgewidth": 1.6},
     "chapter": {"marker": "s", "markersize": 14, "markeredgewidth": 1.6},
 }
+PALE: Final = "#bdbdbd"  # settings of the others
 FAILED: Final = {"markersize": 5, "markeredgewidth": 1.0}
 
 
@@ -65,18 +66,23 @@ class Looks(NamedTuple):
         """Yield the settings that a line joins."""
         return curves_of(rows)
 
-    def front_colour(self, row: CostRow) -> str:
-        """Return the colour of the front that a setting is on."""
-        return DARK
+    @property
+    def members(self) -> dict[str, str]:
+        """Whose panels there are, with their titles."""
+        return {name: name.replace("_", " ") for name in self.solvers}
 
-    def failed_colour(self, row: CostRow) -> str:
-        """Return the colour of a setting that failed."""
-        return GREY
+    def member_of(self, row: CostRow) -> str:
+        """Return in whose panel a setting is."""
+        return row.solver
 
-    def rank(self, row: CostRow) -> float:
-        """Return where among the solvers its own is, from 0 to 1: failures of one stand level."""
-        names = list(self.solvers)
-        return (names.index(row.solver) + 0.5) / len(names)
+    def name_of(self, row: CostRow) -> str:
+        """Return the name of the curve that a setting is on."""
+        title = self.members[row.solver]
+        return f"{title}, {row.preset}" if len(self.presets) > 1 else title
+
+    def shares_front(self, row: CostRow, member: str) -> bool:
+        """Whether the front in a panel may have a setting: that of all solvers is in each."""
+        return True
 
     def mark(self, row: CostRow) -> dict[str, Any]:
         """Return the marker of a setting: full where it starts warm, hollow where cold."""
@@ -118,17 +124,14 @@ def _grouped(rows: Sequence[CostRow], key: Key) -> Iterator[list[CostRow]]:
 
 
 def handles_of(table: CostTable, looks: Looks) -> list[Line2D]:
-    """Return the legend: solvers, presets, timesteps, and what marks mean."""
+    """Return the legend: presets, timesteps, and what marks mean; panels name the solvers."""
 
     def dot(marker: str, label: str, **more: Any) -> Line2D:
         plain = {"color": DARK, "linestyle": "none", "markersize": 6.5, "markeredgewidth": 1.1}
         return Line2D([], [], marker=marker, label=label, **{**plain, **more})
 
     rows = table.rows
-    handles = [
-        Line2D([], [], color=one.colour, linewidth=5, label=name.replace("_", " "))
-        for name, one in looks.solvers.items()
-    ]
+    handles: list[Line2D] = []
     if len(looks.presets) > 1:
         handles += [
             Line2D([], [], color=DARK, linewidth=1.1, linestyle=line, label=f"laws of {name}")
@@ -145,4 +148,6 @@ def handles_of(table: CostTable, looks: Looks) -> list[Line2D]:
     handles += [dot(str(RINGS[role]["marker"]), names[role], **hollow) for role in rings]
     if any(row.failed for row in rows):
         handles.append(dot("x", "failed", **FAILED))
-    return [*handles, Line2D([], [], color=DARK, linewidth=1.6, label="front")]
+    if len(looks.members) > 1:
+        handles.append(dot(".", "another solver", color=PALE))
+    return [*handles, Line2D([], [], color=DARK, linewidth=1.3, label="front")]

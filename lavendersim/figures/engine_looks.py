@@ -13,7 +13,7 @@ from typing import Any, Final, NamedTuple
 
 from matplotlib.lines import Line2D
 
-from lavendersim.figures.cost_looks import COLOURED, CONTROLLED, FAILED, MARKERS, RINGS
+from lavendersim.figures.cost_looks import COLOURED, CONTROLLED, FAILED, MARKERS, PALE, RINGS
 from lavendersim.figures.style import DARK, Look
 from lavendersim.measures.cost_table import ENGINES, CostRow, CostTable
 
@@ -44,18 +44,22 @@ class EngineLooks(NamedTuple):
         """Return the line of the curve that a setting is on."""
         return "-"
 
-    def front_colour(self, row: CostRow) -> str:
-        """Return the colour of the front that a setting is on."""
-        return self.colour(row)
+    @property
+    def members(self) -> dict[str, str]:
+        """Whose panels there are, with their titles."""
+        return self.titles
 
-    def failed_colour(self, row: CostRow) -> str:
-        """Return the colour of a setting that failed."""
-        return self.colour(row)
+    def member_of(self, row: CostRow) -> str:
+        """Return in whose panel a setting is."""
+        return row.family
 
-    def rank(self, row: CostRow) -> float:
-        """Return where among the engines its own is, from 0 to 1: failures of one stand level."""
-        names = list(self.titles)
-        return (names.index(row.family) + 0.5) / len(names)
+    def name_of(self, row: CostRow) -> str:
+        """Return the name of the curve that a setting is on."""
+        return self.titles[row.family]
+
+    def shares_front(self, row: CostRow, member: str) -> bool:
+        """Whether the front in a panel may have a setting: each engine has its own."""
+        return row.family == member
 
     def curves(self, rows: Sequence[CostRow]) -> Iterator[list[CostRow]]:
         """Yield the settings that differ in their timestep alone, the coarsest first."""
@@ -83,18 +87,14 @@ def _beside_timestep(row: CostRow) -> tuple[str, ...]:
 
 
 def handles_of(table: CostTable, looks: EngineLooks) -> list[Line2D]:
-    """Return the legend: engines, timesteps, and what marks mean."""
+    """Return the legend: timesteps, and what marks mean; panels name the engines."""
 
     def dot(marker: str, label: str, **more: Any) -> Line2D:
         plain = {"color": DARK, "linestyle": "none", "markersize": 6.5, "markeredgewidth": 1.1}
         return Line2D([], [], marker=marker, label=label, **{**plain, **more})
 
     rows = table.rows
-    handles = [
-        Line2D([], [], color=COLOURS[name].colour, linewidth=5, label=title)
-        for name, title in looks.titles.items()
-    ]
-    handles += [dot(marker, f"{step} s") for step, marker in looks.timesteps.items()]
+    handles = [dot(marker, f"{step} s") for step, marker in looks.timesteps.items()]
     if any(row.is_controlled for row in rows):
         handles.append(dot(CONTROLLED, "accuracy asked for"))
     handles.append(dot("o", "an engine's own defaults", markerfacecolor="white"))
@@ -108,4 +108,6 @@ def handles_of(table: CostTable, looks: EngineLooks) -> list[Line2D]:
     ]
     if any(row.failed for row in rows):
         handles.append(dot("x", "failed", **FAILED))
-    return [*handles, Line2D([], [], color=DARK, linewidth=1.6, label="front of an engine")]
+    if len(looks.members) > 1:
+        handles.append(dot(".", "another engine", color=PALE))
+    return [*handles, Line2D([], [], color=DARK, linewidth=1.3, label="front of the engine")]

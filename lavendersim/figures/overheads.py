@@ -1,7 +1,7 @@
 """What effects cost: a panel per scene with the overhead of each, and one of compile times.
 
-    effect |  scene 1, ns   |  scene 2, ns   |  compile time, s
-    drag   |      o         |        -o-     |   o s
+    effect |   | scene 1, ns   |   | scene 2, ns   |  compile time, s
+    drag   |   |     o         |-2 |               |   o s
 Numbers are those of `results.json`; nothing is timed here.
 """
 
@@ -11,19 +11,22 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, NullLocator, SymmetricalLogLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from lavendersim.figures.drawing import describe
 from lavendersim.figures.page import Page, blank, write
-from lavendersim.figures.style import DARK, GREY, look
+from lavendersim.figures.style import GREY, look
 from lavendersim.measures.overhead_table import OverheadRow, OverheadTable, OverheadTiming
 
 ROW: Final = 0.27  # [inch]
 SCENE_WIDTH, COMPILE_WIDTH, NAMES_WIDTH = 3.6, 2.6, 2.0  # [inch]
 GAPS: Final = (0.08, 0.04167)  # [inch] around a panel
-LINEAR: Final = 1.0  # [ns] below, the axis is linear: noise goes through zero
+LOWEST, HIGHEST = 0.1, 1e4  # [ns] of the axis; less stands in a strip, as a number
+LESS: Final = 0.02  # [ns] where the strip has its name
+STRIP: Final = 12.0  # [-] what is left of the axis for it, as a ratio of overheads
 IDLE, MOVES, REQUIRED = look(0).colour, look(1).colour, look(4).colour
 MARKERS: Final = {"body": "o", "contact": "s"}
 CAPTION: Final = (
@@ -31,9 +34,9 @@ CAPTION: Final = (
     "of {repeats} interleaved repeats, with the interval that holds the median in 19 of 20 cases; "
     "hollow where that reaches zero. Blue: the scene does not require it, and the engine carries "
     "it idle through the same motion. Orange: the scene requires it. Vermilion: the motion "
-    "without it is another. The axis is linear within ±1 ns and logarithmic outside. Right: what "
-    "the engine with the effect takes to compile, once; lines, the engine of the plan alone. "
-    "{processor}.{short}"
+    "without it is another. Less than 0.1 ns stands as a number in the strip; it may be negative: "
+    "two engines are two programs. Right: what the engine with the effect takes to compile, once; "
+    "lines, the engine of the plan alone. {processor}.{short}"
 )
 ONLY_REQUIRED: Final = " Quick: of {scenes} only effects that the scene requires are timed."
 
@@ -73,27 +76,35 @@ def compose(tables: Sequence[tuple[str, OverheadTable]]) -> Figure:
     axes = figure.subplots(1, len(widths), squeeze=False, sharey=True, width_ratios=widths)[0]
     axes[0].set_yticks(list(places.values()), labels=[name.replace("_", " ") for name in effects])
     axes[0].set_ylim(len(effects) - 0.4, -0.6)  # in the order of the step, from the top
+    timed = [row.timing for _, table in tables for row in table.rows if row.timing is not None]
+    highest = max([HIGHEST, *(2.0 * one.overhead.high for one in timed)])
     for panel, (name, table) in zip(axes, tables, strict=False):
-        _draw_scene(panel, name, table, places)
+        _draw_scene(panel, name, table, places, highest)
     _draw_compile_times(axes[-1], tables, places)
     return figure
 
 
-def _draw_scene(axes: Any, name: str, table: OverheadTable, places: dict[str, int]) -> None:
+def _draw_scene(
+    axes: Any, name: str, table: OverheadTable, places: dict[str, int], highest: float
+) -> None:
     bodies, contacts = table.bodies, table.contacts_per_step
     title = f"{name}: {bodies} {'body' if bodies == 1 else 'bodies'}, {contacts:.3g} contacts"
     describe(axes, title, "overhead [ns per body or contact and step]", "")
-    axes.set_xscale("symlog", linthresh=LINEAR)
-    axes.axvline(0.0, color=DARK, linewidth=1.1)
+    axes.set_xscale("log")
+    axes.axvspan(LOWEST / STRIP, LOWEST, color="#ececec", zorder=0)
     for row in table.rows:
         place = places[row.effect]
         if row.timing is None:
             _write_why_not(axes, place, row.why_not)
             continue
         overhead, colour = row.timing.overhead, _colour(row, row.timing)
-        axes.plot([overhead.low, overhead.high], [place, place], color=colour, linewidth=1.6)
+        if overhead.high > LOWEST:
+            interval = [max(overhead.low, LOWEST), overhead.high]
+            axes.plot(interval, [place, place], color=colour, linewidth=1.6)
+        if overhead.median < LOWEST:
+            _write_number(axes, place, overhead.median)
         axes.plot(
-            overhead.median,
+            overhead.median if overhead.median >= LOWEST else LOWEST / STRIP**0.8,
             place,
             linestyle="none",
             marker=MARKERS[row.unit],
@@ -103,13 +114,24 @@ def _draw_scene(axes: Any, name: str, table: OverheadTable, places: dict[str, in
             markeredgewidth=1.3,
             zorder=3,
         )
-    axes.xaxis.set_major_locator(SymmetricalLogLocator(base=10.0, linthresh=LINEAR))
+    axes.set_xlim(LOWEST / STRIP, highest)
+    decades = range(-1, 1 + int(np.log10(highest)))
+    ticks = [LESS, *(10.0**decade for decade in decades)]
+    axes.xaxis.set_major_locator(FixedLocator(ticks))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_major_formatter(FuncFormatter(_short))
 
 
+def _write_number(axes: Any, place: int, overhead: float) -> None:
+    """Write an overhead that has no place on the axis into its strip."""
+    number = _short(float(f"{overhead:.2g}"), 0)
+    axes.text(LOWEST / STRIP**0.62, place, number, va="center", fontsize=9)
+
+
 def _short(value: float, _: int) -> str:
-    """Return a tick's label, with k for a thousand: -1000 would not fit beside -100."""
+    """Return a tick's label, with k for a thousand: 10000 would not fit beside 1000."""
+    if value == LESS:
+        return "less"
     return f"{value / 1000.0:g}k" if abs(value) >= 1000.0 else f"{value:g}"
 
 

@@ -7,22 +7,33 @@ from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
-from matplotlib.lines import Line2D
-from matplotlib.ticker import NullFormatter, NullLocator
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
 from lavendersim.figures.cost_looks import FLOOR, Looks, drawn
 from lavendersim.figures.drawing import describe, ticks_at_values
 from lavendersim.figures.engine_looks import EngineLooks
+from lavendersim.figures.labels_beside import LineEnd, draw_labels_beside
+from lavendersim.figures.page import POINTS_PER_INCH
 from lavendersim.figures.style import GREY
 from lavendersim.measures.cost_table import CostRow, CostTable
 
 MS: Final = 1e3
+MARGIN: Final = 1.06  # [-] of the timesteps at both sides
+AROUND: Final = 1.0  # [inch] of title, ticks and label
 SLOPES: Final = {1: (0, (1, 2)), 2: (0, (5, 2, 1, 2))}
 
 
-def draw_timestep_errors(axes: Any, table: CostTable, looks: Looks | EngineLooks) -> None:
+def draw_timestep_errors(
+    axes: Any,
+    table: CostTable,
+    looks: Looks | EngineLooks,
+    errors: tuple[float, float],
+    height: float,
+) -> None:
     """Draw, for every solver and preset, the settings that were solved best, and slopes 1 and 2;
     for every engine the least error there is.
+
+    errors: limits of the y axis; height: of the panel with its labels [inch].
     """
     which = "solved best" if isinstance(looks, Looks) else "least of an engine"
     describe(axes, f"error against timestep, {which}", "timestep [ms]", "", "log", "log")
@@ -35,31 +46,32 @@ def draw_timestep_errors(axes: Any, table: CostTable, looks: Looks | EngineLooks
         axes.text(0.5, 0.5, "no setting has an error", transform=axes.transAxes, ha="center")
         return
     curves = best_solved(rows) if isinstance(looks, Looks) else least_errors(rows)
+    low, high = errors
+    ends: list[LineEnd] = []
     for curve in curves:
         steps = [MS * float(Fraction(row.timestep)) for row in curve]
-        errors = [drawn(row) for row in curve]
+        values = [drawn(row) for row in curve]
+        low, high = min(low, *values), max(high, *values)
         colour, line = looks.colour(curve[0]), looks.line(curve[0])
-        axes.plot(steps, errors, color=colour, linestyle=line, linewidth=1.2, alpha=0.8)
-        for row, step, error in zip(curve, steps, errors, strict=True):
+        axes.plot(steps, values, color=colour, linestyle=line, linewidth=1.2, alpha=0.8)
+        for row, step, error in zip(curve, steps, values, strict=True):
             axes.plot(step, error, **looks.mark(row), zorder=3)
-    _draw_slopes(axes, [row for curve in curves for row in curve])
-    ticks_at_values(axes, [MS * float(Fraction(row.timestep)) for row in rows])
+        ends.append(LineEnd(looks.name_of(curve[0]), values[-1], {"color": colour}))
+    steps = sorted({MS * float(Fraction(row.timestep)) for row in rows})
+    axes.set_xlim(steps[0] / MARGIN, steps[-1] * MARGIN)
+    axes.set_ylim(low, high)
+    axes.yaxis.set_major_locator(LogLocator(numticks=7))
+    axes.yaxis.set_minor_locator(NullLocator())
+    ends += _draw_slopes(axes, [row for curve in curves for row in curve])
+    draw_labels_beside(axes, ends, POINTS_PER_INCH * (height - AROUND))
+    ticks_at_values(axes, steps)
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.tick_params(axis="x", labelrotation=45)
 
 
 def shows_timesteps(table: CostTable) -> bool:
     """Return whether there are several timesteps, whose errors have a slope."""
     return len({row.timestep for row in table.rows if row.role != "chapter"}) > 1
-
-
-def slope_handles() -> list[Line2D]:
-    """Return the entries of the legend for slopes: beside curves their names would lie on them."""
-    return [
-        Line2D([], [], color=GREY, linewidth=1.1, linestyle=dashes, label=f"order {order}")
-        for order, dashes in SLOPES.items()
-    ]
 
 
 def best_solved(rows: Sequence[CostRow]) -> list[list[CostRow]]:
@@ -94,12 +106,17 @@ def _solved(row: CostRow) -> tuple[float, int, bool]:
     return (-np.inf if tolerance is None else -tolerance, row.sweeps, row.warm_start)
 
 
-def _draw_slopes(axes: Any, rows: Sequence[CostRow]) -> None:
-    """Draw lines of order 1 and 2 through the largest error."""
+def _draw_slopes(axes: Any, rows: Sequence[CostRow]) -> list[LineEnd]:
+    """Draw lines of order 1 and 2 that part at the least timestep, below the largest error."""
     errors = [drawn(row) for row in rows if drawn(row) > FLOOR]
     steps = np.array(sorted({MS * float(Fraction(row.timestep)) for row in rows}))
     if not errors or len(steps) < 2:
-        return
+        return []
+    common = max(errors) * (steps[0] / steps[-1]) ** max(SLOPES)
+    ends = []
     for order, dashes in SLOPES.items():
-        line = max(errors) * (steps / steps[-1]) ** order
-        axes.plot(steps, line, color=GREY, linewidth=1.1, linestyle=dashes, zorder=1)
+        line = common * (steps / steps[0]) ** order
+        look = {"color": GREY, "linewidth": 1.1, "linestyle": dashes}
+        axes.plot(steps, line, **look, zorder=1)
+        ends.append(LineEnd(f"order {order}", float(line[-1]), look))
+    return ends

@@ -1,51 +1,53 @@
 """The work-precision page of a cost table: error against cost, and error against timestep.
 
-    error |  x x x  failed                error |        /
-          |  o--o                               |      o/   slope 1
-          |   \\  `-o   curves: one knob         |    o /
-          |    `--o--- front                    |  o  /
-          +------------------ cost              +---------- timestep
+    a solver       another         and so on: a panel each, the others as grey dots in it
+    [ x x    ]     [    x x ]
+    [ o-o .. ]     [ .. o-o ]
+    error against timestep, every line named beside the panel      legend of the marks
 Numbers are those of `cost.json`; nothing is timed or measured here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from lavendersim.figures.cost_looks import FAILED, FLOOR, RINGS, Looks, drawn, handles_of
-from lavendersim.figures.drawing import describe
+from lavendersim.figures.cost_looks import Looks, handles_of
+from lavendersim.figures.cost_panels import (
+    AnyLooks,
+    draw_settings,
+    limit_panels,
+    name_strip,
+    name_targets,
+    unit_of,
+)
 from lavendersim.figures.engine_looks import EngineLooks
 from lavendersim.figures.engine_looks import handles_of as handles_of_engines
-from lavendersim.figures.page import Page, blank, write
-from lavendersim.figures.style import DARK, GREY
+from lavendersim.figures.page import POINTS_PER_INCH, Page, blank, write
 from lavendersim.figures.timestep_errors import (
+    AROUND,
     draw_timestep_errors,
     shows_timesteps,
-    slope_handles,
 )
-from lavendersim.measures.cost_table import CostRow, CostTable
+from lavendersim.measures.cost_table import CostTable
 
-WIDTH, LEGEND_WIDTH, HEIGHT = 5.6, 2.9, 5.0  # [inch] of a panel, of the legend
-SECOND_WIDTH: Final = 4.2  # [inch]
-GAPS: Final = (0.1, 0.04167)  # [inch] around a panel
-BAND: Final = 0.9  # share of the axis from which on settings that failed stand
+WIDTH: Final = 12.7  # [inch] of the page
+COLUMNS: Final = 4  # panels side by side
+HEIGHT, ONLY_HEIGHT = 2.7, 4.0  # [inch] of a row of panels; of one row of few
+BELOW_HEIGHT, LEGEND_HEIGHT = 3.6, 0.7  # [inch] errors against timestep; a legend alone
+GAPS: Final = (0.08, 0.06)  # [inch] around a panel
 PERTURBED: Final = "perturbed starts, markers at the greatest"
-AnyLooks = Looks | EngineLooks
 CAPTION: Final = (
     "Error of {measure}{truth}, against the processor's time for a simulated second of physics: "
     "left is cheap, down is accurate. Medians of {repeats} interleaved repeats; the bars, most of "
     "them shorter than a marker is wide, hold the median in 19 of 20 cases. Crosses in the strip "
     "above are settings that failed (diverged, did not converge to their tolerance, or broke a "
-    "claim of the experiment), a line of them a solver. "
+    "claim of the experiment). Pale dots are the settings of the other solvers. "
     "Thin lines join settings that differ in one knob, accuracies asked for among them; the dark "
-    "line is the front: no setting is cheaper and as good. Errors below 1e-15 are round-off and "
-    "drawn there. Neither compilation "
+    "line, the same in every panel, is the front: no setting is cheaper and as good. Errors below "
+    "1e-15 are round-off and drawn there. Neither compilation "
     "nor logging is in any time. {processor}, clock {clock}. {targets}"
 )
 OF_ENGINES: Final = (
@@ -53,10 +55,10 @@ OF_ENGINES: Final = (
     "steps alone, one thread: left is cheap, down is accurate. Medians of {repeats} repeats, in "
     "which all engines take turns; bars hold the median in 19 of 20 cases. Hollow: an engine's own "
     "defaults, or what the config specifies. Crosses in the strip above are settings that failed "
-    "(ended early, did not converge, or broke a claim of the experiment). Thin lines join settings "
-    "that differ in their timestep; thick lines are the front of each engine: none of its settings "
-    "is cheaper and as good. Errors below 1e-15 are round-off and drawn there. {processor}, clock "
-    "{clock}. {targets}"
+    "(ended early, did not converge, or broke a claim of the experiment); pale dots are those of "
+    "the other engines. Thin lines join settings that differ in their timestep; the dark line is "
+    "the front of the engine: none of its settings is cheaper and as good. Errors below 1e-15 are "
+    "round-off and drawn there. {processor}, clock {clock}. {targets}"
 )
 
 
@@ -73,30 +75,51 @@ def draw_work_precision(run: Any, directory: Path) -> list[Path]:
 
 def compose(table: CostTable) -> Figure:
     """Return the page as a matplotlib Figure."""
-    widths = [WIDTH, SECOND_WIDTH, LEGEND_WIDTH]
-    if not shows_timesteps(table):
-        widths = [WIDTH + SECOND_WIDTH, LEGEND_WIDTH]
-    figure = blank(Page(_caption(table), sum(widths), HEIGHT, table.question, gaps=GAPS))
-    panels = list(figure.subplots(1, len(widths), width_ratios=widths))
-    legend = panels.pop()
-    of_engines = table.compares_engines
-    looks: AnyLooks = EngineLooks.of(table.rows) if of_engines else Looks.of(table.rows)
-    draw_settings(panels[0], table, looks)
-    for axes in panels[1:]:
-        draw_timestep_errors(axes, table, looks)
-    limits = [limit for axes in panels for limit in axes.get_ylim()]
-    for axes in panels:
-        axes.set_ylim(min(limits), max(limits))
+    looks: AnyLooks = EngineLooks.of(table.rows) if table.compares_engines else Looks.of(table.rows)
+    columns = min(COLUMNS, len(looks.members))
+    rows = -(-len(looks.members) // columns)
+    above = rows * HEIGHT if rows > 1 else ONLY_HEIGHT
+    below = BELOW_HEIGHT if shows_timesteps(table) else LEGEND_HEIGHT
+    figure = blank(Page(_caption(table), WIDTH, above + below, table.question, gaps=GAPS))
+    parts: Any = figure.subfigures(2, 1, height_ratios=(above, below))
+    upper, lower = parts
+    panels = upper.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    drawn = list(panels.ravel())[: len(looks.members)]
+    for axes, member in zip(drawn, looks.members, strict=True):
+        draw_settings(axes, table, looks, member)
+    errors = limit_panels(drawn, table)
+    unit, _ = unit_of(table)
+    for axes in panels.ravel()[len(drawn) :]:
+        axes.set_axis_off()
+    for place, axes in enumerate(drawn):
+        if place + columns >= len(drawn):  # nothing stands below it
+            axes.set_xlabel(f"cost [{unit} per simulated second]", fontsize=11)
+            axes.tick_params(labelbottom=True)
+        if place % columns == 0:
+            axes.set_ylabel(f"relative error of\n{table.error.measure} [-]")
+            name_strip(axes, table)
+        if place % columns == columns - 1:
+            name_targets(axes, table, POINTS_PER_INCH * (above / rows - AROUND))
+    _draw_below(lower, table, looks, errors)
+    return figure
+
+
+def _draw_below(part: Any, table: CostTable, looks: AnyLooks, errors: tuple[float, float]) -> None:
+    """Draw errors against timesteps, where there are several, and the legend of marks."""
+    if shows_timesteps(table):
+        timesteps, legend = part.subplots(1, 2, width_ratios=(3.0, 1.0))
+        draw_timestep_errors(timesteps, table, looks, errors, BELOW_HEIGHT)
+        timesteps.set_ylabel(f"relative error of\n{table.error.measure} [-]")
+        place, entries = "upper left", 1
+    else:
+        legend, place, entries = part.subplots(), "upper left", COLUMNS
     legend.set_axis_off()
     handles = (
         handles_of_engines(table, looks)
         if isinstance(looks, EngineLooks)
         else handles_of(table, looks)
     )
-    if len(panels) > 1:
-        handles += slope_handles()
-    legend.legend(handles=handles, loc="upper left", borderaxespad=0.0)
-    return figure
+    legend.legend(handles=handles, loc=place, borderaxespad=0.0, ncols=entries)
 
 
 def _caption(table: CostTable) -> str:
@@ -126,91 +149,3 @@ def _caption(table: CostTable) -> str:
         clock=table.clock,
         targets=". ".join(sentences).replace(" us ", " µs ") + ".",
     )
-
-
-def draw_settings(axes: Any, table: CostTable, looks: AnyLooks) -> None:
-    """Draw every setting, the curves between neighbours, the front and the targets."""
-    unit, size = unit_of(table)
-    cost, error = f"cost [{unit} per simulated second]", table.error.measure
-    describe(axes, "error against cost", cost, f"relative error of {error} [-]", "log", "log")
-    timed = [row for row in table.rows if row.ns_per_second is not None]
-    stood = [row for row in timed if not row.failed and row.error is not None]
-    for curve in looks.curves(stood):
-        axes.plot(
-            [row.cost / size for row in curve],
-            [drawn(row) for row in curve],
-            color=looks.colour(curve[0]),
-            linestyle=looks.line(curve[0]),
-            linewidth=0.9,
-            alpha=0.55,
-        )
-    for row in sorted(stood, key=lambda row: row.is_own):  # nothing hides an engine's own defaults
-        _draw_setting(axes, row, size, looks)
-    for family in table.engines:
-        _draw_front(axes, [row for row in stood if row.family == family], size, looks)
-    for target in table.targets:
-        axes.axhline(target.target, color=GREY, linewidth=1.1, linestyle=(0, (5, 3)), zorder=1)
-        axes.text(
-            1.01,
-            target.target,
-            f"{100.0 * target.target:.3g} %",
-            transform=axes.get_yaxis_transform(),
-            ha="left",
-            va="center",
-            fontsize=10,
-            color=GREY,
-        )
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
-    low, high = axes.get_ylim()
-    if len(stood) < len(timed):
-        _draw_failed(axes, [row for row in timed if row not in stood], size, looks)
-        high *= (high / low) ** (1.0 / BAND - 1.0 + 0.03)
-    axes.set_ylim(low, high)
-
-
-def _draw_setting(axes: Any, row: CostRow, size: float, looks: AnyLooks) -> None:
-    level, spread, colour = drawn(row), row.ns_per_second, looks.colour(row)
-    assert spread is not None
-    axes.plot([spread.low / size, spread.high / size], [level, level], color=colour, linewidth=1.4)
-    if row.least_error is not None:  # over perturbed starts
-        errors = [max(row.least_error, FLOOR), level]
-        axes.plot([row.cost / size] * 2, errors, color=colour, linewidth=1.4)
-    axes.plot(row.cost / size, level, **looks.mark(row), zorder=3)
-    _draw_ring(axes, row, row.cost / size, level)
-
-
-def _draw_failed(axes: Any, rows: Sequence[CostRow], size: float, looks: AnyLooks) -> None:
-    """Draw settings that failed in a strip of their own, at their costs, a line a solver."""
-    place = axes.get_xaxis_transform()
-    strip = Rectangle((0.0, BAND), 1.0, 1.0 - BAND, transform=axes.transAxes, color="#ececec")
-    axes.add_patch(strip)
-    axes.text(0.01, 0.5 * (1.0 + BAND), "failed", transform=axes.transAxes, va="center", fontsize=9)
-    for row in rows:
-        cross = {"marker": "x", "linestyle": "none", "color": looks.failed_colour(row), **FAILED}
-        level = 1.0 - (1.0 - BAND) * looks.rank(row)
-        axes.plot(row.cost / size, level, transform=place, zorder=3, **cross)
-        _draw_ring(axes, row, row.cost / size, level, transform=place)
-
-
-def _draw_ring(axes: Any, row: CostRow, cost: float, level: float, **place: Any) -> None:
-    """Draw a ring around what the config specifies, and around the chapter's setting."""
-    if row.role in RINGS:
-        ring = {"markerfacecolor": "none", "markeredgecolor": DARK, "linestyle": "none"}
-        axes.plot(cost, level, **ring, **RINGS[row.role], **place, zorder=4)
-
-
-def _draw_front(axes: Any, rows: Sequence[CostRow], size: float, looks: AnyLooks) -> None:
-    """Draw the front as a stair: what the cheapest setting of at most this cost reaches."""
-    front = sorted((row for row in rows if row.front), key=lambda row: row.cost)
-    costs, errors = [row.cost / size for row in front], [drawn(row) for row in front]
-    colour = looks.front_colour(front[0]) if front else DARK
-    axes.step(costs, errors, where="post", color=colour, linewidth=1.6, zorder=2)
-
-
-def unit_of(table: CostTable) -> tuple[str, float]:
-    """Return the unit of costs and its size [ns]: what most settings take some of."""
-    costs = sorted(row.cost for row in table.rows if row.ns_per_second is not None)
-    middle = costs[len(costs) // 2] if costs else 1e6
-    return ("ms", 1e6) if middle >= 5e5 else ("µs", 1e3)

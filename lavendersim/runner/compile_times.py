@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
 from time import thread_time
+from typing import Final
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.spec import Spec
@@ -17,6 +18,21 @@ from lavendersim.engine.step import advance_for, is_compiled
 from lavendersim.scene.build import build
 
 from .workers import end_with_parent
+
+PER_ENGINE: Final = 18.0  # [s] of the processor, of boxes by any solver; of a ball 6 s
+WORTH_SAYING: Final = 60.0  # [s]
+
+
+def compiling_ahead(specs: Sequence[Spec]) -> str:
+    """Return what compiling the engines will take, in words; "" where that is less than a minute.
+
+    An engine counts that has no kernel yet.
+    """
+    cold = sum(not is_compiled(spec) for spec in dict.fromkeys(specs))
+    seconds = PER_ENGINE * cold
+    if seconds < WORTH_SAYING:
+        return ""
+    return f"{cold} engines are compiled first, once: some {seconds / 60.0:.0f} min of a processor"
 
 
 def compile_times(
@@ -41,9 +57,13 @@ def compile_times(
             max_tasks_per_child=1,
         ) as pool:
             waiting = {pool.submit(compile_anew, config, spec): spec for spec in missing}
-            for done, future in enumerate(as_completed(waiting), start=1):
-                times[waiting[future]] = future.result()
-                progress(done, len(missing))
+            try:
+                for done, future in enumerate(as_completed(waiting), start=1):
+                    times[waiting[future]] = future.result()
+                    progress(done, len(missing))
+            except BaseException:  # Ctrl-C waits for what is being compiled, and for no other
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
     return times
 
 

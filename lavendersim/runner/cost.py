@@ -25,10 +25,11 @@ from lavendersim.measures.cost_table import CostRow, CostTable, CostTruth, Error
 from lavendersim.measures.spread import Spread
 from lavendersim.peers.catalogue import LAVENDER, effort_of
 
+from .compile_times import compiling_ahead
 from .cost_engines import able_engines
 from .cost_errors import SettingError, SettingRun, errors_of, law_of, orders_of, runs_of
 from .cost_targets import across_engines, answers, front_of_engine
-from .cost_times import Clocked, Times, times_of
+from .cost_times import Clocked, Times, engines_timed, times_of
 from .environment import machine
 from .experiment_run import Finished, run
 from .json_table import text_of
@@ -95,14 +96,20 @@ def take_cost(
     settings = settings_of(experiment, able)
     grid = prepared.experiment if prepared else over_the_grid(experiment, settings)
     tables: list[CostTable] = []
+    each = len(experiment.cells())
+    by_setting = [grid.cells()[place * each : (place + 1) * each] for place in range(len(settings))]
+    timed = zip(settings, by_setting, strict=True)
+    if sentence := compiling_ahead(
+        engines_timed([cells for setting, cells in timed if setting.role != "truth"])
+    ):
+        progress.note(sentence)
 
     def closing(finished: Finished, measured: list[dict[str, Any]]) -> None:
         runs = runs_of(settings, finished, measured)
         errors = errors_of(experiment, runs)
-        each = len(experiment.cells())
         clocked = [
-            _clocked(grid.cells()[place * each : (place + 1) * each], one)
-            for place, one in enumerate(runs)
+            _clocked(cells, one)
+            for cells, one in zip(by_setting, runs, strict=True)
             if one.setting.role != "truth"
         ]
         spec = experiment.config.cost

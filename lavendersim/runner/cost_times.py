@@ -90,6 +90,12 @@ def times_of(
     return times, taken
 
 
+def engines_timed(cells: Sequence[Sequence[Cell]]) -> list[Spec]:
+    """Return lavender's engines that are compiled and timed for settings, of each its cells."""
+    specs = [_spec_of(Clocked(each, ())) for each in cells]
+    return list(dict.fromkeys(spec for spec in specs if spec is not None))
+
+
 def _spec_of(each: Clocked) -> Spec | None:
     """Return what lavender's engine of a setting is composed of; None of another engine's."""
     if each.cells[0].config.engine is not None:

@@ -212,10 +212,14 @@ def complete(
 
     done: those that ended before, by the names of their logs. For who holds the directory.
     """
-    from .overheads import take_overheads, write_overheads
+    from .compile_times import compiling_ahead
+    from .overheads import engines_timed, take_overheads, write_overheads
     from .plans import distinct
 
     experiment, cells = prepared.experiment, prepared.cells
+    takes_overheads = overheads and experiment.config.overhead is not None
+    if takes_overheads and (sentence := compiling_ahead(engines_timed(experiment))):
+        progress.note(sentence)
     (directory / "cells").mkdir(exist_ok=True)
     write_whole(directory / CONFIG, experiment.text, flush=False)
     with uncollected():  # jobs stay, and so do results
@@ -235,7 +239,7 @@ def complete(
     measured = [taken[cell.index].values for cell in result.run.cells]
     del taken
     table = None
-    if overheads and experiment.config.overhead is not None:
+    if takes_overheads:
         table = take_overheads(experiment, jobs, progress.timing)
         write_overheads(directory / OVERHEADS, table)
     with uncollected():

@@ -64,12 +64,8 @@ def take_overheads(
     spec = experiment.config.overhead
     assert spec is not None
     (cell,) = experiment.cells()
-    pairs = pairs_of(cell.config, _named(experiment))
-    if spec.effects == REQUIRED:
-        pairs = [pair for pair in pairs if pair.required]
-    specs = list(
-        dict.fromkeys(each for pair in pairs for each in (pair.off, pair.on) if each is not None)
-    )
+    pairs = _pairs(experiment)
+    specs = _specs(pairs)
     seconds = compile_times(
         cell.config,
         specs,
@@ -83,6 +79,25 @@ def take_overheads(
     samples, taken = _rounds(pairs, timed, spec.repeats, report)
     table = _table(cell, pairs, timed, samples, seconds, (first, steps, taken.rounds))
     return replace(table, interrupted=taken.interrupted, only_required=spec.effects == REQUIRED)
+
+
+def engines_timed(experiment: Experiment) -> list[Spec]:
+    """Return the engines that are compiled and timed for the overheads of an experiment."""
+    return _specs(_pairs(experiment))
+
+
+def _pairs(experiment: Experiment) -> list[EnginePair]:
+    spec = experiment.config.overhead
+    assert spec is not None
+    (cell,) = experiment.cells()
+    pairs = pairs_of(cell.config, _named(experiment))
+    return [pair for pair in pairs if pair.required or spec.effects != REQUIRED]
+
+
+def _specs(pairs: Sequence[EnginePair]) -> list[Spec]:
+    return list(
+        dict.fromkeys(each for pair in pairs for each in (pair.off, pair.on) if each is not None)
+    )
 
 
 def _timed(

@@ -30,8 +30,9 @@ class ContactEnv(gymnasium.Env[Any, Any]):
     """Bodies in contact, acted on by forces, torques and velocities within declared limits.
 
     config, cell, actions: those of `Simulator`. steps_per_action: timesteps that an action acts
-    over. reward: of an observation and its info, 0 without it. terminated: whether an episode ends
-    there, beside where a body's state is no longer finite.
+    over. normalised: actions are shares of their limits, from -1 to 1, as most learners expect
+    them; else they have their units. reward: of an observation and its info, 0 without it.
+    terminated: whether an episode ends there, beside where a body's state is no longer finite.
 
     An observation has, a row per body in the config's order, `position` [m], `orientation` (w x y
     z), `velocity` [m/s], `angular_velocity` [rad/s] and `contact`, the sums of
@@ -46,6 +47,7 @@ class ContactEnv(gymnasium.Env[Any, Any]):
         *,
         cell: int = 0,
         steps_per_action: int = 1,
+        normalised: bool = False,
         reward: Judgement | None = None,
         terminated: Judgement | None = None,
     ) -> None:
@@ -55,11 +57,15 @@ class ContactEnv(gymnasium.Env[Any, Any]):
             raise UsageError(f"steps_per_action: expected at least 1, got {steps_per_action}")
         self.simulator = Simulator(config, cell, actions)
         self._steps, self._reward, self._ends = steps_per_action, reward, terminated
+        self._is_normalised = normalised
+
+        def box(limit: float) -> spaces.Box:
+            bound = 1.0 if normalised else limit
+            return spaces.Box(-bound, bound, (3,), np.float64)
+
         self.action_space = spaces.Dict(
             {
-                body: spaces.Dict(
-                    {key: spaces.Box(-limit, limit, (3,), np.float64) for key, limit in one.items()}
-                )
+                body: spaces.Dict({key: box(limit) for key, limit in one.items()})
                 for body, one in self.simulator.actions.items()
             }
         )
@@ -89,7 +95,8 @@ class ContactEnv(gymnasium.Env[Any, Any]):
 
         Velocities are set before the first of them. Raises UsageError as `Simulator.step` does.
         """
-        seen, _, diverged, truncated, info = self.simulator.step(action)
+        given = self._in_units(action) if self._is_normalised else action
+        seen, _, diverged, truncated, info = self.simulator.step(given)
         for _ in range(self._steps - 1):
             if diverged or truncated:
                 break
@@ -98,6 +105,19 @@ class ContactEnv(gymnasium.Env[Any, Any]):
         ended = diverged or bool(self._ends and self._ends(observation, info))
         reward = float(self._reward(observation, info)) if self._reward else 0.0
         return observation, reward, ended, truncated, info
+
+    def _in_units(
+        self, action: Mapping[str, Mapping[str, Any]]
+    ) -> dict[str, dict[str, np.ndarray]]:
+        """Return shares of limits times these; a name that has none is left to be refused."""
+        limits = self.simulator.actions
+        return {
+            body: {
+                key: np.asarray(share, float) * limits.get(body, {}).get(key, 1.0)
+                for key, share in one.items()
+            }
+            for body, one in action.items()
+        }
 
     def _seen(
         self, seen: dict[str, Any], info: dict[str, Any]

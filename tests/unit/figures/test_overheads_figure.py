@@ -11,11 +11,12 @@ from matplotlib import style
 from matplotlib.figure import Figure
 
 from lavendersim.figures import draw, draw_overheads
-from lavendersim.figures.overheads import IDLE, MOVES, REQUIRED, compose
+from lavendersim.figures.overheads import IDLE, LOWEST, MOVES, REQUIRED, STRIP, compose
 from lavendersim.figures.style import STYLE
 from lavendersim.measures.overhead_table import OverheadTable
 from tests.made_overheads import gap, overhead_table, timed
 
+IN_STRIP = LOWEST / STRIP**0.8  # where the marker of what is less than the axis has stands
 ROWS = (
     timed("drag", 2.5),
     timed("gravity", 400.0, required=True, same_motion=False),
@@ -56,21 +57,21 @@ def marks(axes: Any) -> dict[float, Any]:
 def test_an_overhead_is_drawn_at_its_number_with_its_interval() -> None:
     axes = page(("sphere", table())).axes[0]
     found = marks(axes)
-    assert set(found) == {2.5, 400.0, 70.0, -0.1}
+    assert set(found) == {2.5, 400.0, 70.0, IN_STRIP}
     bars = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) == 2]
     assert [2.25, 2.75] in [list(bar) for bar in bars]
     names = [text.get_text() for text in axes.get_yticklabels()]
     assert names == ["drag", "gravity", "step log", "friction", "rotation"]
-    places = [found[overhead].get_ydata()[0] for overhead in (2.5, 400.0, 70.0, -0.1)]
+    places = [found[overhead].get_ydata()[0] for overhead in (2.5, 400.0, 70.0, IN_STRIP)]
     assert places == [0, 1, 2, 3]
 
 
 def test_colour_tells_who_calls_shape_the_unit_and_a_hollow_mark_noise() -> None:
     found = marks(page(("sphere", table())).axes[0])
-    colours = [found[overhead].get_color() for overhead in (2.5, 400.0, 70.0, -0.1)]
+    colours = [found[overhead].get_color() for overhead in (2.5, 400.0, 70.0, IN_STRIP)]
     assert colours == [IDLE, MOVES, REQUIRED, IDLE]
-    assert [found[overhead].get_marker() for overhead in (2.5, 400.0, -0.1)] == ["o", "o", "s"]
-    assert [found[p].get_markerfacecolor() == "white" for p in (2.5, 400.0, -0.1)] == [
+    assert [found[overhead].get_marker() for overhead in (2.5, 400.0, IN_STRIP)] == ["o", "o", "s"]
+    assert [found[p].get_markerfacecolor() == "white" for p in (2.5, 400.0, IN_STRIP)] == [
         False,
         False,
         True,
@@ -79,17 +80,25 @@ def test_colour_tells_who_calls_shape_the_unit_and_a_hollow_mark_noise() -> None
 
 def test_an_effect_without_an_overhead_says_why_in_its_row() -> None:
     texts = page(("sphere", table())).axes[0].texts
-    assert [(text.get_text(), text.get_position()[1]) for text in texts] == [
-        ("friction needs it", 4)
-    ]
+    assert ("friction needs it", 4) in [(text.get_text(), text.get_position()[1]) for text in texts]
 
 
-def test_small_and_negative_overheads_are_on_the_page_beside_large_ones() -> None:
+def test_the_axis_carries_a_tenth_to_ten_thousand_and_less_stands_as_a_number_in_its_strip() -> (
+    None
+):
     axes = page(("sphere", table())).axes[0]
+    assert axes.get_xscale() == "log"
     low, high = axes.get_xlim()
-    assert low < -0.35
-    assert high > 400.25
-    assert axes.get_xscale() == "symlog"
+    assert high == 1e4
+    shown = [text for text in axes.get_xticklabels() if low <= text.get_position()[0] <= high]
+    assert [text.get_text() for text in shown] == ["less", "0.1", "1", "10", "100", "1k", "10k"]
+    assert ("-0.1", 3) in [(text.get_text(), text.get_position()[1]) for text in axes.texts]
+    assert low < IN_STRIP < LOWEST
+    # of its interval, -0.35 to 0.15, the part that is on the axis
+    bars = [list(line.get_xdata()) for line in axes.lines if len(line.get_xdata()) == 2]
+    assert [LOWEST, pytest.approx(0.15)] in bars
+    wide = page(("sphere", table(timed("drag", 12_345.0)))).axes[0]
+    assert wide.get_xlim()[1] > 12_345.0
 
 
 def test_several_scenes_share_the_names_of_effects() -> None:

@@ -1,13 +1,16 @@
-"""The work-precision page: what its caption says, and where settings without an error stand."""
+"""The work-precision page: what its caption says, and that all of it can be read."""
 
 from __future__ import annotations
 
-import math
-from typing import Any
+from itertools import combinations
+from typing import Any, get_args
 
-import pytest
+from matplotlib import style
+from matplotlib.text import Text
 
-from lavendersim.figures.work_precision import BAND, compose
+from lavendersim.cell.choices import Solver
+from lavendersim.figures.style import STYLE
+from lavendersim.figures.work_precision import compose
 from tests.made_costs import cost_table, row_data, spread
 
 STEPS = ("1/60", "1/240")
@@ -35,32 +38,61 @@ def test_the_caption_says_machine_clock_repeats_and_spread() -> None:
         assert part in caption
 
 
-def test_a_setting_stands_at_its_cost_and_error_and_one_that_failed_in_the_strip() -> None:
-    """Whatever error it has: what fell over is no point to be read off the axis."""
-    good = row_data(front=True, error=1e-3, ns_per_second=spread(4e6, 3e6, 5e6))
-    none = row_data(sweeps=2, error=None, failed="diverged", ns_per_second=spread(1e6, 1e6, 1e6))
-    wrong = none | {"sweeps": 3, "error": 1.0, "ns_per_second": spread(2e6, 2e6, 2e6)}
-    work = compose(cost_table(good, none, wrong)).axes[0]
-    marked = {tuple(line.get_xydata()[0]) for line in work.lines if line.get_marker() == "o"}
-    assert marked == {(4.0, 1e-3)}
-    # [ms]; one solver has one line, in the middle of the strip
-    crossed = [tuple(line.get_xydata()[0]) for line in work.lines if line.get_marker() == "x"]
-    assert [x for x, _ in crossed] == [1.0, 2.0]
-    assert all(y == pytest.approx(0.5 * (BAND + 1.0)) for _, y in crossed)
-    low, high = work.get_ylim()
-    share = math.log(1e-3 / low) / math.log(high / low)
-    assert share < BAND  # no other setting is in the strip
-
-
-def test_slopes_are_named_in_the_legend_and_one_timestep_has_none() -> None:
-    """On the panel their names lay on the curves."""
+def test_slopes_are_named_beside_the_panel_and_one_timestep_has_none() -> None:
     coarse, fine = (row_data(timestep=h, ns_per_second=spread(1e6, 1e6, 1e6)) for h in STEPS)
     figure = compose(cost_table(coarse, fine))
-    assert [len(axes.texts) for axes in figure.axes][1] == 0
-    assert legend_of(figure)[-2:] == ["order 1", "order 2"]
-    figure = compose(cost_table(coarse))
-    assert len(figure.axes) == 2  # settings, legend
+    assert {"order 1", "order 2", "adaptive"} == {text.get_text() for text in figure.axes[1].texts}
     assert "order 1" not in legend_of(figure)
+    assert len(compose(cost_table(coarse)).axes) == 2  # settings, legend
+
+
+def test_no_text_lies_upon_another() -> None:
+    """Seven solvers that end at one error, an engine's page too: names, ticks, titles, targets."""
+    solvers = get_args(Solver)
+    many = [
+        row_data(solver=solver, timestep=h, role=role, error=error, failed=failed)
+        for solver in solvers
+        for h in STEPS
+        for role, error, failed in (("grid", 0.1, ""), ("specified", 1e-14, ""), ("grid", 9.0, "x"))
+    ]
+    targets = [ANSWER | {"target": target, "sentence": ""} for target in (1e-2, 1e-3)]
+    engines = [row_data(engine=name, error=1e-9) for name in ("lavender", "mujoco", "bullet")]
+    for table in (cost_table(*many, targets=targets), cost_table(*engines, targets=targets)):
+        with style.context(STYLE, after_reset=True):
+            figure = compose(table)
+            figure.canvas.draw()
+        boxes = [(text.get_text(), text.get_window_extent()) for text in texts_of(figure)]
+        assert len(boxes) > 20
+        for (one, box), (other, further) in combinations(boxes, 2):
+            assert not box.overlaps(further), (one, other)
+        for text, box in boxes:
+            assert figure.bbox.x0 <= box.x0, text
+            assert box.x1 <= figure.bbox.x1, text
+
+
+def texts_of(figure: Any) -> list[Any]:
+    """Every text that is drawn."""
+    drawn = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
+    hidden = [
+        label
+        for axes in figure.axes
+        for axis in (axes.xaxis, axes.yaxis)
+        for tick in axis.get_major_ticks()
+        for label in (tick.label1, tick.label2)
+        if not axes.axison or not inside(axis, tick.get_loc())
+    ]
+    hidden += [
+        text
+        for axes in figure.axes
+        if not axes.axison
+        for text in (axes.xaxis.label, axes.yaxis.label, axes.title)
+    ]
+    return [text for text in drawn if text not in hidden]
+
+
+def inside(axis: Any, place: float) -> bool:
+    low, high = sorted(axis.get_view_interval())
+    return bool(low <= place <= high)
 
 
 def legend_of(figure: Any) -> list[str]:

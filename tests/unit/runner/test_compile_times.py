@@ -63,3 +63,37 @@ def test_no_more_processes_than_kernels(
     monkeypatch.setattr(module, "_known", lambda config, spec: None)
     compile_times(CONFIG, SPECS, workers, lambda done, of: None)
     assert Pool.made[0]["workers"] == expected
+
+
+def test_what_is_compiled_first_is_said_where_it_takes_more_than_a_minute(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Three of four engines are cold: 54 s; four: 72 s, a minute; each is counted once."""
+    specs = [*SPECS, Spec(effects=("gravity", "friction"))]
+    kept = {specs[0]}
+    monkeypatch.setattr(module, "is_compiled", lambda spec: spec in kept)
+    assert module.compiling_ahead(specs * 2) == ""
+    kept.clear()
+    said = "4 engines are compiled first, once: some 1 min of a processor"
+    assert module.compiling_ahead(specs * 2) == said
+
+
+def test_what_is_interrupted_waits_for_no_engine_that_nothing_compiles_yet(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ends: list[dict[str, bool]] = []
+    shutdown = Pool.shutdown
+
+    def ended(pool: Pool, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        ends.append({"wait": wait, "cancel_futures": cancel_futures})
+        shutdown(pool, wait)
+
+    def interrupted(done: int, of: int) -> None:
+        if done == 1:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_known", lambda config, spec: None)
+    monkeypatch.setattr(Pool, "shutdown", ended)
+    with pytest.raises(KeyboardInterrupt):
+        compile_times(CONFIG, SPECS, 1, interrupted)
+    assert ends[0] == {"wait": False, "cancel_futures": True}

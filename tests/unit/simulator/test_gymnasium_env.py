@@ -43,6 +43,27 @@ def test_the_librarys_own_check_passes() -> None:
         check_env(ContactEnv(CART, LIMITS), skip_render_check=True)
 
 
+def test_a_normalised_environment_is_warned_of_by_nothing_about_its_actions() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.filterwarnings("ignore", message=".*infinity.*")  # positions have no bound
+        warnings.filterwarnings("ignore", message=".*render.*|.*spec.*")  # there is nothing to see
+        check_env(ContactEnv(CART, LIMITS, normalised=True), skip_render_check=True)
+
+
+def test_normalised_actions_are_shares_of_their_limits() -> None:
+    """0.2 of 20 N on 2 kg over 0.01 s: 0.02 m/s, to round-off."""
+    env = ContactEnv(CART, LIMITS, normalised=True)
+    assert env.action_space["cart"]["force"].high.tolist() == [1.0, 1.0, 1.0]
+    env.reset(seed=1)
+    observation, *_ = env.step({"cart": {"force": (0.2, 0.0, 0.0)}})
+    assert observation["velocity"][1, 0] == pytest.approx(0.02, rel=1e-12)
+    with pytest.raises(UsageError, match="force"):
+        env.step({"cart": {"force": (1.01, 0.0, 0.0)}})
+    with pytest.raises(UsageError, match="card"):
+        env.step({"card": {"force": (0.1, 0.0, 0.0)}})
+
+
 def test_a_force_accelerates_over_every_step_of_its_action() -> None:
     """a = F/m from rest: x = a t^2/2 to round-off, for the force is constant over the steps."""
     env = ContactEnv(CART, LIMITS, steps_per_action=10)
