@@ -33,6 +33,7 @@ from lavendersim.runner.environment import processor, versions
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = ROOT / "docs" / "engines"
+SOURCES = (".", ":!docs/engines")  # what is kept is written before it is asked for
 PAGES = (ROOT / "README.md", ROOT / "docs" / "results.md")
 SCENES = ("rest", "stack_of_six", "heavy_on_light")
 TRACKERS = ("launched_box", "pressed_against_a_wall")
@@ -127,7 +128,7 @@ def made(runs: Path) -> dict[str, Any]:
     }
     return {
         "commit": _git("rev-parse", "HEAD"),
-        "changed": bool(_git("status", "--porcelain", "--untracked-files=no")),
+        "changed": bool(_git("status", "--porcelain", "--untracked-files=no", "--", *SOURCES)),
         "processor": processor(),
         "versions": versions() | engines,
         "bytes": sum(log.stat().st_size for log in logs_of(runs)),
