@@ -12,6 +12,11 @@ than DEEP at the end, the part is made again,
 What comes back more slowly, or so soon that the part would be none, is a contact of the part: its
 pair is whole, too, and none of its rows waits.
 A part whose solve leads nothing into each other is made once, to the same bits.
+
+Corners that touch between two flat faces may be what carries the body: a prism of six sides leans
+on two of its corners near its tipping angle, and of four that were kept those may be none. Such a
+corner may sink by the slop and no more. A rim has points without end, of which each new step finds
+a lower one; there DEEP is what keeps parts from being made again.
 """
 
 from __future__ import annotations
@@ -20,11 +25,11 @@ from math import cos, sin, sqrt
 from typing import Any
 
 from .approach import CREEP, NEVER, OVERLAP, make_forced, make_rate, normal
-from .compile import kernel
+from .compile import inner, kernel
 from .effects import made_once
 from .foreseen_impacts import FLIGHT, make_is_impact
 from .integrate import ALWAYS
-from .records import SPHERE
+from .records import BOX, HULL, PLANE, SPHERE, TOUCHING
 from .spec import Spec
 from .step_terms import step_terms
 from .vectors import Vec3, cross, dot, length, minus, position
@@ -32,6 +37,21 @@ from .vectors import Vec3, cross, dot, length, minus, position
 # What a part may lead a point without a row into the other surface [m]: the next part would give up
 # the order of impacts for more.
 DEEP = OVERLAP
+
+
+@inner
+def is_flat(body):
+    """Whether the faces of a body are flat: where one touches, it is by its corners."""
+    return body.shape == BOX or body.shape == HULL or body.shape == PLANE
+
+
+@inner
+def depth_allowed(point, a, b, params):
+    """Return how far a part may lead a point into the other surface [m]; a, b: its bodies."""
+    closed = max(params.slop, TOUCHING)
+    if point.waits == 0 and point.phi <= closed and is_flat(a) and is_flat(b):
+        return min(closed, DEEP)
+    return DEEP
 
 
 def make_note_left_out(spec: Spec) -> Any:
@@ -134,7 +154,7 @@ def make_look_over(spec: Spec) -> Any:
             across = rate(n, va, mb, arm_a, arm_b)
             share_a, share_b = share(ma), share(mb)
             moved = first + share_b * (last - across) - share_a * (first - across)
-            limit = -DEEP - max(point.phi, 0.0)
+            limit = -depth_allowed(point, poses[a], poses[b], params) - max(point.phi, 0.0)
             if not moved * dt < limit:
                 continue
             mean = 0.5 * (first + last)

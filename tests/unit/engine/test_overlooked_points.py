@@ -17,12 +17,22 @@ from lavendersim.engine.record_layout import (
     allocate_parameters,
     allocate_velocities,
 )
-from lavendersim.engine.records import MOTION, OVERLOOKED, SPHERE, dtype
+from lavendersim.engine.records import (
+    BOX,
+    CAPSULE,
+    CYLINDER,
+    HULL,
+    MOTION,
+    OVERLOOKED,
+    SPHERE,
+    dtype,
+)
 from lavendersim.engine.spec import Spec
 
 EFFECTS = ("friction", "impact_order", "impact_time", "overlooked_points", "rotation")
 SPEC = Spec(effects=EFFECTS)
 DT = 1.0 / 240.0
+SLOP = 1e-6  # [m]
 ARM = 0.1  # [m] of the point from the centre of the body, along x
 
 
@@ -137,3 +147,27 @@ def test_a_row_that_would_meet_at_once_is_a_contact_of_the_part() -> None:
     part = Part(0.0, 1)
     assert part.look({"vz": 0.001}, {"vz": -1.0}) == DT
     assert part.pairs["whole"][0] == 1
+
+
+def sinks(shape: int, gap: float, depth: float, waits: int = 0) -> bool:
+    """Whether a part is made again that leads a point, `gap` above a plane, `depth` deep."""
+    part = Part(gap, waits)
+    part.bodies["shape"][1] = shape
+    part.parameters["slop"] = SLOP
+    down = {"vz": -(depth + gap) / DT}
+    return part.look(down, down) > 0.0
+
+
+@pytest.mark.parametrize("shape", [BOX, HULL])
+def test_a_corner_of_a_face_that_touches_may_sink_by_the_slop(shape: int) -> None:
+    for gap in (0.0, 0.9 * SLOP):
+        assert not sinks(shape, gap, 0.9 * SLOP)
+        assert sinks(shape, gap, 1.1 * SLOP)
+
+
+def test_one_that_is_apart_or_waits_or_of_a_rim_may_sink_deep() -> None:
+    for depth, made_again in ((0.9 * DEEP, False), (1.1 * DEEP, True)):
+        assert sinks(BOX, 1.1 * SLOP, depth) == made_again
+        assert sinks(BOX, 0.0, depth, waits=1) == made_again
+        for shape in (CAPSULE, CYLINDER):
+            assert sinks(shape, 0.0, depth) == made_again
