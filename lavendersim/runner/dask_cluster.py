@@ -10,6 +10,7 @@ Alone knows dask, an extra. What a queue takes stands where dask-jobqueue and Da
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -64,11 +65,19 @@ def _cluster(jobs: int) -> Any:
         return LocalCluster(n_workers=jobs, threads_per_worker=1, dashboard_address=None)
     if find_spec("dask_jobqueue") is None:
         raise UsageError(f"queue {asked.queue}: needs dask-jobqueue: pip install lavendersim[dask]")
-    import dask_jobqueue
-
-    cluster = getattr(dask_jobqueue, QUEUES[asked.queue])()
+    cluster = getattr(job_queues(), QUEUES[asked.queue])()
     cluster.scale(jobs=asked.jobs)
     return cluster
+
+
+def job_queues() -> Any:
+    """Return dask-jobqueue, whose import takes Ctrl-C: the handler of who imports it stays."""
+    held = signal.getsignal(signal.SIGINT)
+    try:
+        import dask_jobqueue
+    finally:
+        signal.signal(signal.SIGINT, held)
+    return dask_jobqueue
 
 
 class Queue(NamedTuple):

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -224,13 +225,30 @@ def test_what_is_asked_of_a_queue_has_to_be_understood(section: Any, said: str) 
     assert str(raised.value).endswith(said)
 
 
+def with_job_queues() -> Any:
+    """Return the module of Dask's workers, where dask-jobqueue is there as well."""
+    if find_spec("dask_jobqueue") is None:
+        pytest.skip("dask-jobqueue is not installed")
+    from lavendersim.runner import dask_cluster
+
+    return dask_cluster
+
+
+def test_ctrl_c_stays_with_who_held_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As it is imported, dask-jobqueue makes SIGINT a silent exit of the whole process."""
+    dask_cluster = with_job_queues()
+    for name in [name for name in sys.modules if name.partition(".")[0] == "dask_jobqueue"]:
+        monkeypatch.delitem(sys.modules, name)
+    held = signal.getsignal(signal.SIGINT)
+    assert dask_cluster.job_queues() is sys.modules["dask_jobqueue"]
+    assert signal.getsignal(signal.SIGINT) is held
+
+
 def test_the_jobs_of_slurm_are_what_the_page_on_clusters_says(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """No queue is needed to write a job; none is submitted."""
-    dask, jobqueue = pytest.importorskip("dask"), pytest.importorskip("dask_jobqueue")
-    from lavendersim.runner import dask_cluster
-
+    dask, dask_cluster = pytest.importorskip("dask"), with_job_queues()
     page = (Path(__file__).parents[3] / "docs" / "clusters.md").read_text()
     text = page.partition("```yaml\nlavender:")[2].partition("```")[0]
     asked = yaml.safe_load("lavender:" + text)
@@ -239,7 +257,7 @@ def test_the_jobs_of_slurm_are_what_the_page_on_clusters_says(
     def scale(self: Any, workers: int = 0, *, jobs: int = 0) -> None:
         scaled.append(jobs)
 
-    monkeypatch.setattr(jobqueue.SLURMCluster, "scale", scale)
+    monkeypatch.setattr(dask_cluster.job_queues().SLURMCluster, "scale", scale)
     # As from a file: dask-jobqueue's own defaults are under it.
     with dask.config.set(dask.config.merge({"jobqueue": dask.config.get("jobqueue")}, asked)):
         assert dask_cluster.asked_of_queue() == ("slurm", 50)
@@ -261,10 +279,7 @@ def test_the_jobs_of_slurm_are_what_the_page_on_clusters_says(
 
 
 def test_a_queue_without_its_limits_is_refused_in_a_sentence() -> None:
-    dask = pytest.importorskip("dask")
-    pytest.importorskip("dask_jobqueue")
-    from lavendersim.runner.dask_cluster import dask_workers
-
+    dask, dask_workers = pytest.importorskip("dask"), with_job_queues().dask_workers
     refused = pytest.raises(UsageError, match=r"cores and memory|specify how many cores")
     with dask.config.set({"lavender": {"queue": "slurm"}}), refused, dask_workers(None, 1):
         pass
