@@ -56,7 +56,7 @@ def draw_settings(axes: Any, table: CostTable, looks: AnyLooks, member: str) -> 
     for row in sorted(own, key=lambda row: row.is_own):  # nothing hides an engine's own defaults
         _draw_setting(axes, row, size, looks)
     _draw_front(axes, [row for row in stood if looks.shares_front(row, member)], size)
-    for target in {target.target for target in table.targets}:
+    for target in dict.fromkeys(target.target for target in table.targets):
         axes.axhline(target, color=GREY, linewidth=1.1, linestyle=(0, (5, 3)), zorder=1)
     failed = [row for row in timed if row not in stood and looks.member_of(row) == member]
     if len(stood) < len(timed):
@@ -94,7 +94,7 @@ def name_targets(axes: Any, table: CostTable, height: float) -> None:
     """Write what targets are, beside a panel whose axis is so high [pt]."""
     ends = [
         LineEnd(f"{100.0 * target:.3g} %", target, {"color": GREY})
-        for target in {target.target for target in table.targets}
+        for target in dict.fromkeys(target.target for target in table.targets)
     ]
     draw_labels_beside(axes, ends, height)
 

@@ -9,10 +9,12 @@ Numbers are those of `cost.json`; nothing is timed or measured here.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from lavendersim.figures.cost_looks import Looks, handles_of
 from lavendersim.figures.cost_panels import (
@@ -101,7 +103,22 @@ def compose(table: CostTable) -> Figure:
         if place % columns == columns - 1:
             name_targets(axes, table, POINTS_PER_INCH * (above / rows - AROUND))
     _draw_below(lower, table, looks, errors)
+    _settle(figure, parts)
     return figure
+
+
+def _settle(figure: Figure, parts: Sequence[Any]) -> None:
+    """Lay the page out, and round where its parts and axes stand.
+
+    The solver of nested layouts leaves them another last digit from time to time, of which names
+    in an SVG are made.
+    """
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    for part in parts:
+        part.bbox_relative.set_points(part.bbox_relative.get_points().round(9))
+    for axes in figure.axes:
+        axes.set_position(Bbox(axes.get_position().get_points().round(9)))
 
 
 def _draw_below(part: Any, table: CostTable, looks: AnyLooks, errors: tuple[float, float]) -> None:

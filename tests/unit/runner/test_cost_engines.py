@@ -71,8 +71,7 @@ def test_every_setting_is_timed_and_the_table_is_read_and_drawn_as_it_was(costed
     run = costed.finished.run
     assert open_run(None, run.path.parent).cost() == table
     figure = compose(table)
-    titles = [text.get_text() for text in figure.axes[2].get_legend().get_texts()]
-    assert titles[0] == "MuJoCo"
+    assert figure.axes[0].get_title(loc="left") == "MuJoCo"
 
 
 @needs("mujoco")
