@@ -72,11 +72,11 @@ def _cluster(jobs: int) -> Any:
 
 def job_queues() -> Any:
     """Return dask-jobqueue, whose import takes Ctrl-C: the handler of who imports it stays."""
-    held = signal.getsignal(signal.SIGINT)
+    before = signal.getsignal(signal.SIGINT)
     try:
         import dask_jobqueue
     finally:
-        signal.signal(signal.SIGINT, held)
+        signal.signal(signal.SIGINT, before)
     return dask_jobqueue
 
 
