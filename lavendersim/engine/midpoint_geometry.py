@@ -16,7 +16,8 @@ from .collide.shapes import shapes_in
 from .compile import inner, kernel
 from .effects import made_once
 from .joint_turn import put_mean_ends
-from .records import BOX, CYLINDER, HULL, PLANE, ROPE, TOUCHING
+from .overlooked_points import has_flat_faces
+from .records import CYLINDER, PLANE, ROPE, TOUCHING
 from .rotation import half_turn, is_round
 from .row_terms import row_terms
 from .spec import Spec
@@ -74,12 +75,6 @@ def make_stand_midway(spec: Spec) -> Any:
         return missed
 
     return kernel(stand_midway, spec)
-
-
-@inner
-def has_flat_faces(body):
-    """Whether all its faces are flat: what is round leaves a face along that face's plane."""
-    return body.shape == BOX or body.shape == HULL
 
 
 @inner

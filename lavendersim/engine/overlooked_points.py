@@ -40,9 +40,15 @@ DEEP = OVERLAP
 
 
 @inner
+def has_flat_faces(body):
+    """Whether all its faces are flat: what is round leaves a face along that face's plane."""
+    return body.shape == BOX or body.shape == HULL
+
+
+@inner
 def is_flat(body):
-    """Whether the faces of a body are flat: where one touches, it is by its corners."""
-    return body.shape == BOX or body.shape == HULL or body.shape == PLANE
+    """Whether it touches what is flat by corners alone."""
+    return has_flat_faces(body) or body.shape == PLANE
 
 
 @inner
