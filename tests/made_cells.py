@@ -77,9 +77,9 @@ def made_cell(
     """Return a cell of bodies, each the data of `body_data` or what is given to it.
 
     sections: `events`, `duration`, `record`, `effects`, `study` in place of those of a plain cell,
-    and `forces`, `connections` of its scene.
+    and `forces`, `connections`, `springs` of its scene.
     """
-    own = {name: sections.pop(name) for name in ("connections",) if name in sections}
+    own = {name: sections.pop(name) for name in ("connections", "springs") if name in sections}
     cell = {
         "scene": {
             "gravity": list(gravity),

@@ -62,7 +62,7 @@ def blueprint(
     rulers += [f"grid {grid_spacing(room):g} m"] if grounded else []
     scene = scene_view("; ".join(rulers), contents_of(ALONE, scale is not None), camera)
     curves = [
-        curves_view(plot.entity, plot.title, values_of(trace, plot), seconds)
+        curves_view(plot.entity, plot.title, values_of(trace, plot), seconds, least=plot.least)
         for plot in plots_of(trace)
     ]
     beside = rrb.Horizontal(scene, rrb.Vertical(*curves), column_shares=[3, 2])
@@ -71,7 +71,7 @@ def blueprint(
 
 def contents_of(layer: Layer, contacts: bool) -> list[str]:
     """The entities of a log that a view of its scene has."""
-    folders = ("bodies", "paths", "grid", *(["contacts"] if contacts else []))
+    folders = ("bodies", "connections", "paths", "grid", *(["contacts"] if contacts else []))
     return [f"{layer.path(folder)}/**" for folder in folders]
 
 
@@ -122,14 +122,16 @@ def curves_view(
     values: npt.NDArray[np.float64],
     seconds: float,
     legend: rrb.Corner2D | None = None,
+    least: float = 0.0,
 ) -> rrb.TimeSeriesView:
     """One plot, the whole recording in view: first and last step must not lie on the frame.
 
-    values: all that are drawn in it; not finite where there is nothing to draw.
+    values: all that are drawn in it; not finite where there is nothing to draw. least: a curve that
+    changes by no more is a straight line.
     """
     values = values[np.isfinite(values)]
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
-    margin = MARGIN * (high - low) or 1.0
+    margin = MARGIN * (high - low) if high - low > least else 1.0
     shown = rr.TimeRange(
         start=rrb.TimeRangeBoundary.absolute(seconds=-MARGIN * seconds),
         end=rrb.TimeRangeBoundary.absolute(seconds=(1 + MARGIN) * seconds),

@@ -1,14 +1,12 @@
 """Poses, contacts, forces and plots of a log, as rerun columns on `sim_time`.
 
-Columns are sent in blocks of many steps: a call per step costs rerun some 20 us and a chunk of its
-own, a block costs the same once. A step without contacts sends an empty list, which clears the
-arrows of the step before.
+A step without contacts sends an empty list, which clears the arrows of the step before.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,12 +16,13 @@ import rerun as rr
 from lavendersim.cell import Plane
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.shapes import bounding_radius
+from lavendersim.replay.blocks import blocks, send_columns
+from lavendersim.replay.connections import send_connections
 from lavendersim.replay.force_scale import CONTACT_KEY, ForceScale
 from lavendersim.replay.joint_forces import with_whole_forces
 from lavendersim.replay.layer import ALONE, Layer
 from lavendersim.replay.removal import clear_removed
 from lavendersim.replay.scene import BODIES, GRIDS, WORLD, Extent, entity
-from lavendersim.replay.timeline import TIMELINE
 
 if TYPE_CHECKING:
     from lavendersim.trace import Trace
@@ -33,9 +32,6 @@ CONTACT_FORCES = ("contacts", "forces")
 
 ARROW_OF_SCENE = 0.006  # radius of a shaft in diagonals of the scene, at most
 ARROW_OF_BODY = 0.06  # and in bounding radii of the median movable body
-
-# Small enough for the viewer to fetch what it shows, large enough to make the calls' cost vanish.
-STEPS_PER_BLOCK = 200
 
 # What is read of a contact, whatever else its log holds.
 CONTACT_FIELDS = ("step", *CONTACT_KEY, "x", "y", "z", "nx", "ny", "nz", "force_n")
@@ -50,6 +46,7 @@ class Plot(NamedTuple):
 
     `topic`: the log's own curve of the field; without it the field is not worth drawing.
     `dots`: drawn as points, because its values stand alone where contacts last one step.
+    `least`: a curve that changes by no more, in its unit, is a straight line: round-off.
     """
 
     topic: str
@@ -59,6 +56,7 @@ class Plot(NamedTuple):
     colour: tuple[int, int, int]
     shown: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]
     dots: bool = False
+    least: float = 0.0
 
 
 def millimetres(metres: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
@@ -89,6 +87,7 @@ PLOTS = (
         "max penetration [mm]",
         (86, 180, 233),
         millimetres,
+        least=1e-6,
     ),
     Plot(
         "/plot/log10_residual",
@@ -117,12 +116,6 @@ def plots_of(trace: Trace) -> list[Plot]:
     """The plots whose topic and field the log has; which it has follows the experiment's plan."""
     fields = trace.step.dtype.names or ()
     return [plot for plot in PLOTS if plot.topic not in trace.absent and plot.field in fields]
-
-
-def blocks(rows: int) -> Iterator[slice]:
-    """Cut `rows` into slices of STEPS_PER_BLOCK; the last may be shorter."""
-    for start in range(0, rows, STEPS_PER_BLOCK):
-        yield slice(start, min(start + STEPS_PER_BLOCK, rows))
 
 
 def time_in_nanoseconds(trace: Trace) -> npt.NDArray[np.int64]:
@@ -154,9 +147,10 @@ def send_scene(
     layer: Layer = ALONE,
     since: int = 0,
 ) -> None:
-    """Send what changes in the scene: poses, contacts, and what is removed."""
+    """Send what changes in the scene: poses, connections, contacts, and what is removed."""
     times = time_in_nanoseconds(trace).astype("timedelta64[ns]")
     _send_poses(stream, trace, times, layer, since)
+    send_connections(stream, trace, layer, since)
     if scale is not None:
         _send_contacts(stream, trace, room, scale, layer, since)
     clear_removed(stream, trace, time_in_nanoseconds(trace), [BODIES, GRIDS], layer)
@@ -264,15 +258,3 @@ def send_curve(
         known = np.isfinite(values[block])
         curve = rr.Scalars.columns(scalars=values[block][known])
         send_columns(stream, path, times[block], curve.partition(known.astype(np.int64)))
-
-
-def send_columns(
-    stream: rr.RecordingStream,
-    path: str,
-    times: npt.NDArray[Any],
-    columns: rr.ComponentColumnList,
-) -> None:
-    """Send columns of an entity at these times."""
-    # strict: rerun otherwise turns a mistake of ours into a warning and drops the data
-    index = rr.TimeColumn(TIMELINE, duration=times)
-    stream.send_columns(path, indexes=[index], columns=columns, strict=True)
