@@ -1,14 +1,15 @@
-"""The line of an ideal: a closed form evaluated at and between the cells of a series.
+"""The line of an ideal: a closed form or a formula at and between the cells of a series.
 
-Between two swept values the formula is evaluated with the swept number put into the config of the
-left cell. Where that does not reproduce the right cell's own value (the number moves other things
-as well, such as a release height), the line goes straight from cell to cell.
+Between two swept values a formula has the number there for its axis. A closed form is evaluated
+with the swept number put into the config of the left cell; where that does not reproduce the right
+cell's own value (the number moves other things as well, such as a release height), the line goes
+straight from cell to cell.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -16,32 +17,69 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.figures.series import band_along
+from lavendersim.figures.specs.base import Ideal
+from lavendersim.measures.cell_judgements import evaluated
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.interfaces import Cell, Floats
 from lavendersim.measures.selection import group_by
 from lavendersim.measures.specs.base import ClosedForm
+from lavendersim.quantities.formula import FormulaError
 
 POINTS = 24  # per interval between two swept values
 
 
+def ideal_of(ideal: Ideal, cell: Cell) -> float:
+    """Return an ideal in a cell; NaN where its formula has no value there."""
+    if ideal.closed_form is not None:
+        return evaluate_form(ideal.closed_form, cell.trace().config)
+    assert ideal.value is not None
+    return _value_at(ideal.value, cell.coordinates)
+
+
+def _value_at(value: float | str, coordinates: Mapping[str, Any]) -> float:
+    try:
+        return evaluated(value, coordinates)
+    except FormulaError:
+        return math.nan
+
+
 def ideal_line(
-    form: ClosedForm, cells: Sequence[Cell], axis: str, path: str | None, log_x: bool
+    ideal: Ideal, cells: Sequence[Cell], axis: str, path: str | None, log_x: bool
 ) -> tuple[Floats, Floats]:
-    """Return places on the axis and the closed form there, averaged over the other axes."""
-    coarse = band_along(cells, axis, lambda cell: evaluate_form(form, cell.trace().config))
-    lines = (
-        []
-        if path is None
-        else [
-            _fine_line(form, group, axis, path, log_x)
-            for group in group_by(cells, without=axis).values()
-            if len(group) == len(coarse.places)  # others would bend the mean where they end
-        ]
-    )
+    """Return places on the axis and the ideal there, averaged over the other axes.
+
+    path: that the axis varies, where it is one.
+    """
+    coarse = band_along(cells, axis, lambda cell: ideal_of(ideal, cell))
+    lines: list[tuple[Floats, Floats] | None] = []
+    for group in group_by(cells, without=axis).values():
+        if len(group) != len(coarse.places):  # it would bend the mean where it ends
+            continue
+        if ideal.closed_form is None:
+            lines.append(_line_of_values(ideal.value, group, axis, log_x))
+        elif path is not None:
+            lines.append(_fine_line(ideal.closed_form, group, axis, path, log_x))
     fine = [line for line in lines if line is not None]
     if not fine or len(fine) < len(lines):
         return coarse.places, coarse.mean
     return fine[0][0], np.mean([values for _, values in fine], axis=0)
+
+
+def _line_of_values(
+    value: float | str | None, cells: Sequence[Cell], axis: str, log_x: bool
+) -> tuple[Floats, Floats] | None:
+    """Return the line of a formula through cells that differ in this axis alone."""
+    assert value is not None
+    ordered = sorted(cells, key=lambda cell: float(cell.coordinates[axis]))
+    between = np.geomspace if log_x else np.linspace
+    places = [
+        float(place)
+        for ends in pairwise(float(cell.coordinates[axis]) for cell in ordered)
+        for place in between(*ends, POINTS)
+    ]
+    others = ordered[0].coordinates
+    values = [_value_at(value, {**others, axis: place}) for place in places]
+    return (np.array(places), np.array(values)) if places else None
 
 
 def _fine_line(

@@ -6,7 +6,7 @@ so that only a true `<=` passes.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any, Final
 
@@ -100,19 +100,19 @@ def _allowed(spec: Equals, cell: Cell) -> tuple[float, float]:
         target = evaluate_form(spec.closed_form, cell.config)
     else:
         assert spec.value is not None
-        target = evaluated(spec.value, cell)
+        target = evaluated(spec.value, cell.coordinates)
     return target, max(spec.absolute, spec.relative * abs(target))
 
 
-def evaluated(value: float | str, cell: Cell) -> float:
-    """Return an expected number; a formula with the cell's values of its axes.
+def evaluated(value: float | str, coordinates: Mapping[str, Any]) -> float:
+    """Return an expected number; of a formula that with a cell's values of its axes.
 
     FormulaError where the cell lacks an axis, or the formula has no value.
     """
     if not isinstance(value, str):
         return value
     formula = read_formula(value)
-    values: dict[str, Any] = {name: cell.coordinates.get(name) for name in formula.names}
+    values: dict[str, Any] = {name: coordinates.get(name) for name in formula.names}
     if missing := sorted(name for name, number in values.items() if not _is_number(number)):
         raise FormulaError(f"the cell has no number for axis ${missing[0]}")
     return float(

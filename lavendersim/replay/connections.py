@@ -36,18 +36,18 @@ SLACK: Final = 1e-3
 Floats = npt.NDArray[np.float64]
 
 
-class End(NamedTuple):
+class Corner(NamedTuple):
     """A corner of a line: a point in the frame of a body."""
 
     body: str
     point: Floats  # [m]
 
 
-class Line(NamedTuple):
+class DrawnLine(NamedTuple):
     """How a connection is drawn."""
 
     path: tuple[str, ...]  # of its entity
-    ends: tuple[End, ...]
+    ends: tuple[Corner, ...]
     length: float | None = None  # [m] of a rope
 
     @property
@@ -56,33 +56,35 @@ class Line(NamedTuple):
         return [end.body for end in self.ends]
 
 
-def lines_of(scene: CellScene) -> list[Line]:
+def lines_of(scene: CellScene) -> list[DrawnLine]:
     """Return a line for each rope, spring and joint, in the order of the config."""
     lines = []
     for name, one in scene.connections.items():
         if isinstance(one, Joint):
-            lines.append(Line(("joints", name), _arms(one, scene.bodies)))
+            lines.append(DrawnLine(("joints", name), _arms(one, scene.bodies)))
             continue
-        ends = [End(body, np.array(at)) for body, at in zip(one.between, one.points, strict=True)]
+        ends = [
+            Corner(body, np.array(at)) for body, at in zip(one.between, one.points, strict=True)
+        ]
         a, b = (_in_world(scene.bodies[end.body], end.point) for end in ends)
         length = one.length if one.length is not None else float(np.linalg.norm(b - a))
-        lines.append(Line(("ropes", name), tuple(ends), length))
+        lines.append(DrawnLine(("ropes", name), tuple(ends), length))
     for number, spring in enumerate(scene.springs):
         tied = ((spring.a, spring.point_a), (spring.b, spring.point_b))
-        ends = [End(body, np.array(point)) for body, point in tied]
-        lines.append(Line(("springs", str(number)), tuple(ends)))
+        ends = [Corner(body, np.array(point)) for body, point in tied]
+        lines.append(DrawnLine(("springs", str(number)), tuple(ends)))
     return lines
 
 
-def _arms(joint: Joint, bodies: dict[str, CellBody]) -> tuple[End, ...]:
+def _arms(joint: Joint, bodies: dict[str, CellBody]) -> tuple[Corner, ...]:
     """Return the centre of A, the joint in the frame of A, and the centre of B; of what moves."""
     a, b = joint.between
     body = bodies[a]
     point = np.array(joint.at)
     if not isinstance(body.shape, Plane):
         point = rotation_matrix(body.orientation).T @ (point - np.array(body.position))
-    centres = [[End(name, np.zeros(3))] if is_movable(bodies[name]) else [] for name in (a, b)]
-    return (*centres[0], End(a, point), *centres[1])
+    centres = [[Corner(name, np.zeros(3))] if is_movable(bodies[name]) else [] for name in (a, b)]
+    return (*centres[0], Corner(a, point), *centres[1])
 
 
 def _in_world(body: CellBody, point: Floats) -> Floats:
@@ -92,7 +94,7 @@ def _in_world(body: CellBody, point: Floats) -> Floats:
     return np.array(body.position) + rotation_matrix(body.orientation) @ point
 
 
-def corners_of(line: Line, trace: Trace, rows: npt.NDArray[np.int64]) -> Floats:
+def corners_of(line: DrawnLine, trace: Trace, rows: npt.NDArray[np.int64]) -> Floats:
     """Return the corners of a line (rows, corners, 3) [m]; rows: of the recorded poses."""
     pose = trace.recorded_pose.pose
     bodies = trace.config.scene.bodies
@@ -134,7 +136,7 @@ def send_connections(stream: rr.RecordingStream, trace: Trace, layer: Layer, sin
                 stream.log(place, rr.LineStrips3D([]))  # what is static cannot be cleared
 
 
-def _colours(line: Line, corners: Floats) -> npt.NDArray[np.uint32]:
+def _colours(line: DrawnLine, corners: Floats) -> npt.NDArray[np.uint32]:
     """Return the colour of a line in each row."""
     slack = np.zeros(len(corners), dtype=bool)
     if line.length is not None:

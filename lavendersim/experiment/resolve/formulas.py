@@ -4,8 +4,9 @@
     scene: {bodies: {ball: {shape: {kind: sphere, radius: $r}, position: [0, 0, 2 * $r]}}}
 
 A constant that an axis varies has a number in each cell alone: what takes it stays text until the
-cell's value stands in `constants`. An expected value may take axes too; constants are written into
-its text as numbers, those that are swept as their axes, and the axes are left to each cell.
+cell's value stands in `constants`. An expected value, and the ideal of a figure, may take axes too;
+constants are written into its text as numbers, those that are swept as their axes, and the axes are
+left to each cell.
 """
 
 from __future__ import annotations
@@ -100,9 +101,12 @@ def _swept_constants(root: Node) -> dict[str, _SweptBy]:
     return swept
 
 
-def _is_expected_value(path: Path) -> bool:
+def _key_of_cells(path: Path) -> str:
+    """Return the key whose value may take axes, where a path is that of such a value."""
     keys = [step for step in path if isinstance(step, str)]
-    return keys[0] == "expect" and keys[1:] in (["equals"], ["equals", "value"])
+    if keys[0] == "expect" and keys[1:] in (["equals"], ["equals", "value"]):
+        return "equals"
+    return "ideal" if keys[0] == "figure" and keys[-2:] == ["ideal", "value"] else ""
 
 
 def _walk(node: Node, path: Path, visit: Callable[[Path, Node], Node]) -> Node:
@@ -192,7 +196,7 @@ class _Pass:
         for one in sorted(formula.names - set(others)):
             if one not in self._constants:
                 known = [f"${each}" for each in [*self._constants, *others]]
-                what = "constant or axis" if others or name == "equals" else "constant"
+                what = "constant or axis" if others or name in ("equals", "ideal") else "constant"
                 hint = nearest(f"${one}", known) or f"; write `constants: {{{one}: ...}}`"
                 self._report.add(node.mark, f"{name}: there is no {what} ${one}{hint}")
                 return None
@@ -217,22 +221,20 @@ class _Pass:
         text = node.text or ""
         if not is_formula(text, self._constants):
             return node
-        name = str(next(step for step in reversed(path) if isinstance(step, str)))
-        wanted = _is_expected_value(path)
-        if wanted:
-            name = "equals"
+        wanted = _key_of_cells(path)
+        name = wanted or str(next(step for step in reversed(path) if isinstance(step, str)))
         formula = self._read(node, name, self._axes if wanted else ())
         if formula is None:
             return replace(node, content=BROKEN)
         if wanted and (axes := formula.names & self._axes.keys()):
-            self._check_axes(node, axes)
+            self._check_axes(node, axes, name)
         if formula.names & (self._wrong - self._axes.keys() if wanted else self._wrong):
             self._report.doubt()
             return replace(node, content=BROKEN)
         if wanted and (lost := self._not_named(formula)):
             axis = self._swept[lost].axis
             sentence = f"the values of ${lost} do not name the cells of axis {axis}"
-            self._report.add(node.mark, f"equals: {sentence}; put constants.{lost} first in it")
+            self._report.add(node.mark, f"{name}: {sentence}; put constants.{lost} first in it")
             return replace(node, content=BROKEN)
         if wanted and formula.names & self._axes.keys():
             return replace(node, content=self._with_constants(formula))
@@ -250,17 +252,17 @@ class _Pass:
         self.computed.append(Computed(".".join(map(str, path)), text, number, node.mark))
         return replace(node, content=number)
 
-    def _check_axes(self, node: Node, axes: Collection[str]) -> None:
+    def _check_axes(self, node: Node, axes: Collection[str], name: str) -> None:
         for axis in sorted(axes):
             if any(value.number is None for value in self._axes[axis]):
                 sentence = f"axis ${axis} has values that are no numbers"
-                self._report.add(node.mark, f"equals: {sentence}")
+                self._report.add(node.mark, f"{name}: {sentence}")
             elif axis in self._constants and (
                 axis not in self._swept or self._swept[axis].axis != axis
             ):
                 instead = f"let the axis vary constants.{axis}, or rename one"
                 sentence = f"${axis} is a constant and an axis of another path; {instead}"
-                self._report.add(node.mark, f"equals: {sentence}")
+                self._report.add(node.mark, f"{name}: {sentence}")
 
     def _not_named(self, formula: Formula) -> str | None:
         """Return a swept constant that the coordinates of cells do not tell."""

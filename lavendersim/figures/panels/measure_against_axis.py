@@ -89,8 +89,8 @@ def draw_panel(
         )
         if panel.ideal is not None:
             path = swept_path(experiment, panel.axis)
-            form = panel.ideal.closed_form
-            places, ideal = ideal_line(form, series.cells, panel.axis, path, panel.x_scale == "log")
+            log_x = panel.x_scale == "log"
+            places, ideal = ideal_line(panel.ideal, series.cells, panel.axis, path, log_x)
             key = tuple(ideal.round(12))
             if key not in drawn:  # series with the same ideal share one line
                 label = panel.ideal.label if not drawn else None

@@ -9,10 +9,10 @@ import numpy as np
 
 from lavendersim.errors import NotReportedError
 from lavendersim.figures.drawing import draw_ideal
+from lavendersim.figures.ideal import ideal_of
 from lavendersim.figures.registration import draws
 from lavendersim.figures.series import looks_of, series_of, within
 from lavendersim.figures.specs.time_series import OF_STEPS, POSITIONS, SPEEDS, TimeSeries
-from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.columns import (
     clearance_by_step,
     contacts_of,
@@ -59,7 +59,7 @@ def draw_panel(
                 zorder=3,
             )
             if panel.ideal is not None and index == number == 0 and len(time):
-                ideal = evaluate_form(panel.ideal.closed_form, cell.trace().config)
+                ideal = ideal_of(panel.ideal, cell)
                 ends = np.array([time[0], time[-1]]) * panel.x_factor
                 level = [ideal * panel.factor] * 2
                 draw_ideal(axes, ends, level, panel.ideal.label, order=4.0)

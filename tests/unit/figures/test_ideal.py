@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 from synthetic import SyntheticCell, ball_and_floor, trace_of
 
 from lavendersim.figures.ideal import POINTS, ideal_line
+from lavendersim.figures.specs.base import Ideal
 from lavendersim.measures.specs.base import ClosedForm
 
-WEIGHT = ClosedForm(form="weight", bodies=("ball",))
+WEIGHT = Ideal(closed_form=ClosedForm(form="weight", bodies=("ball",)), label="weight")
 MASS = "scene.bodies.ball.mass"
 GRAVITY = 9.81
 
@@ -70,3 +72,33 @@ def _pulled(strength: float) -> dict:
     config = ball_and_floor()
     config["scene"]["gravity"] = [0.0, 0.0, -strength]
     return config
+
+
+@pytest.mark.parametrize("log_x", [False, True])
+def test_a_formula_has_the_numbers_between_cells_for_its_axis(log_x: bool) -> None:
+    """Whatever the axis varies: a formula knows nothing of the scene."""
+    ideal = Ideal(value="3 * $mass**2 / $pull", label="law")
+    cells = [cell(mass, pull=2.0) for mass in (8.0, 1.0, 2.0)]
+    places, values = ideal_line(ideal, cells, "mass", None, log_x)
+    assert len(places) == 2 * POINTS
+    np.testing.assert_allclose(values, 1.5 * places**2, rtol=1e-14)
+
+
+def test_where_a_formula_has_no_value_its_line_has_a_gap() -> None:
+    ideal = Ideal(value="sqrt($mass - 2)", label="law")
+    places, values = ideal_line(ideal, [cell(1.0), cell(4.0)], "mass", None, False)
+    np.testing.assert_array_equal(np.isnan(values), places < 2.0)
+    np.testing.assert_allclose(values[places >= 2.0], np.sqrt(places[places >= 2.0] - 2.0))
+
+
+def test_an_ideal_is_a_number_in_every_cell_as_well() -> None:
+    places, values = ideal_line(
+        Ideal(value=0.25, label="a"), [cell(1.0), cell(4.0)], "mass", None, False
+    )
+    assert set(values.tolist()) == {0.25}
+    assert places[[0, -1]].tolist() == [1.0, 4.0]
+
+
+def test_an_ideal_is_a_form_or_a_value() -> None:
+    with pytest.raises(ValidationError, match="exactly one of value, closed_form"):
+        Ideal(label="a")

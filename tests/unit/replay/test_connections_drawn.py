@@ -10,7 +10,7 @@ from lavendersim import replay
 from lavendersim.replay.connections import (
     LINE_COLOUR,
     SLACK_COLOUR,
-    Line,
+    DrawnLine,
     corners_of,
     lines_of,
 )
@@ -110,4 +110,4 @@ def test_what_connects_nothing_that_moves_is_not_drawn(tied, tmp_path):
         tied.resolved["scene"]["bodies"][body] |= {"fixed": True}
     replay.save(tied, tmp_path / "trace.rrd")
     assert drawn(tied, tmp_path / "trace.rrd") == {}
-    assert all(isinstance(one, Line) for one in lines_of(tied.config.scene))
+    assert all(isinstance(one, DrawnLine) for one in lines_of(tied.config.scene))

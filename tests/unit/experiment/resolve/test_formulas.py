@@ -112,6 +112,25 @@ def test_a_swept_constant_that_names_no_cell_cannot_be_expected() -> None:
         loaded(sweep + EXPECT.replace("FORMULA", "2 * $r"))
 
 
+FIGURE = """
+measure: {slip: {kind: slip_distance, body: ball}}
+figure:
+  caption: c
+  panels:
+    - {kind: measure_against_axis, measure: slip, axis: size, x_label: x, y_label: y,
+       ideal: {value: FORMULA, label: law}}
+"""
+
+
+def test_the_ideal_of_a_figure_keeps_axes_as_an_expected_value_does() -> None:
+    sweep = "sweep: {size: {path: constants.r, values: [0.1, 0.2]}}"
+    figure = loaded(sweep + FIGURE.replace("FORMULA", "$gap + 1")).config.figure
+    assert figure is not None
+    assert figure.panels[0].ideal.value == "(2 * $size) + 1"  # type: ignore[attr-defined]
+    with pytest.raises(ConfigError, match=r"ideal: there is no constant or axis \$sise.*\$size"):
+        loaded(sweep + FIGURE.replace("FORMULA", "2 * $sise"))
+
+
 def test_dollars_of_texts_stay_what_they_are() -> None:
     experiment = loaded("question: does it cost $r?\nexpected: 2 * $r\n")
     assert (experiment.config.question, experiment.config.expected) == (
