@@ -276,7 +276,7 @@ def make_advance(spec: Spec) -> Any:
             moved = counters.projection_sweeps > 0
             diverged, cause = integrate(bodies, velocities, motion, state.pseudo, moved, params.dt)
             if ends:
-                end_part(bodies, params)
+                end_part(state, params)
             if ordered:
                 if length < left and diverged < 0:
                     counters.elapsed += length

@@ -86,10 +86,10 @@ class Hooks:
 
     drive: Maker | None = None  # (drives, bodies, velocities, params, counters), in every part
     start_step: Maker | None = None  # (bodies, velocities), before forces act
-    end_part: Maker | None = None  # (bodies, params), once poses have moved
+    end_part: Maker | None = None  # (state, params), once poses have moved
     accelerate: Maker | None = None  # (body, velocity, params), before contacts are completed
     act_between: Maker | None = None  # (links, bodies, velocities, motion, params, counters)
-    link_row: Maker | None = None  # (row, links, bodies): fills the columns of a step
+    link_row: Maker | None = None  # (row, links, bodies): fills the columns of a step, which ends
     prepare: Maker | None = None  # (contact, va, vb, pair, params), when it has frame and levers
     capture: Maker | None = None  # (contact, pair, params), once per contact and step
     preload: Maker | None = None  # (contact, velocities, motion): before the solve; 1 in `loaded`

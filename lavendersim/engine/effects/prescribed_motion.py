@@ -284,12 +284,13 @@ def make_prescribe(spec):
 
 
 def make_end_part(spec):
-    """Return `kernel(bodies, params)`: bodies stand where the function says."""
+    """Return `kernel(state, params)`: bodies stand where the function says."""
     from ..rotation import orient
 
     turns = step_terms(spec).turns
 
-    def stand_there(bodies, params):
+    def stand_there(state, params):
+        bodies = state.bodies
         for i in range(bodies.shape[0]):
             body = bodies[i]
             if body.prescribed == 1 and body.kinematic == 1:

@@ -197,13 +197,34 @@ def make_step_row(spec: Spec) -> Kernel:
     return kernel(log_not_found, spec)
 
 
+def make_end_part(spec: Spec) -> Kernel:
+    """Return `kernel(state, params)`: impulses of a part on movable bodies from fixed ones."""
+
+    def add_impulses(state, params):
+        links, bodies = state.links, state.bodies
+        for k in range(links.shape[0]):
+            link = links[k]
+            if link.active == 0:
+                continue
+            body_a, body_b = bodies[link.a], bodies[link.b]
+            if body_a.inv_m > 0.0 and body_b.inv_m == 0.0:
+                body_a.tied_x += link.px
+                body_a.tied_y += link.py
+                body_a.tied_z += link.pz
+            elif body_b.inv_m > 0.0 and body_a.inv_m == 0.0:
+                body_b.tied_x -= link.px
+                body_b.tied_y -= link.py
+                body_b.tied_z -= link.pz
+
+    return kernel(add_impulses, spec)
+
+
 def make_link_row(spec: Spec) -> Kernel:
     """Return `kernel(row, links, bodies)` that fills its columns of a step."""
     place = make_place(spec)
 
     def log_springs(row, links, bodies):
         energy, most, stretched = 0.0, 0.0, 0.0
-        x, y, z = 0.0, 0.0, 0.0
         for k in range(links.shape[0]):
             link = links[k]
             if link.active == 0:
@@ -215,12 +236,11 @@ def make_link_row(spec: Spec) -> Kernel:
                 stretched = stretch
             if abs(link.force) > abs(most):
                 most = link.force
-            sign = 0.0
-            if body_a.inv_m > 0.0 and body_b.inv_m == 0.0:
-                sign = 1.0
-            elif body_b.inv_m > 0.0 and body_a.inv_m == 0.0:
-                sign = -1.0
-            x, y, z = x + sign * link.px, y + sign * link.py, z + sign * link.pz
+        x, y, z = 0.0, 0.0, 0.0
+        for i in range(bodies.shape[0]):
+            body = bodies[i]
+            x, y, z = x + body.tied_x, y + body.tied_y, z + body.tied_z
+            body.tied_x, body.tied_y, body.tied_z = 0.0, 0.0, 0.0
         row.spring_energy, row.spring_force, row.spring_stretch = energy, most, stretched
         row.spring_impulse_x, row.spring_impulse_y, row.spring_impulse_z = x, y, z
 
@@ -229,6 +249,8 @@ def make_link_row(spec: Spec) -> Kernel:
 
 _MOVED: list[tuple[str, str]] = [
     ("joined", "i8"),  # 1: a spring pulls it
+    # Impulse on it in the step so far, of springs to bodies that do not move, world [N s].
+    *[(f"tied_{axis}", "f8") for axis in "xyz"],
     # Of the step: 1: springs act off its centre, 2: they say where it goes; whether its mean spin
     # is not found; its group, 1 + the first body of it, 0: none.
     *[(name, "i8") for name in ("sprung", "unturned", "group")],
@@ -305,6 +327,7 @@ EFFECT = Effect(
     hooks=Hooks(
         act_between=make_act,
         act_beside=make_act_beside,
+        end_part=make_end_part,
         limit_projection=make_limit_projection,
         link_row=make_link_row,
         step_row=make_step_row,

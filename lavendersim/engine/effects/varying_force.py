@@ -140,10 +140,11 @@ def make_pushes(spec):
 
 
 def make_end_part(spec):
-    """Return `kernel(bodies, params)`: impulse and work of a part."""
+    """Return `kernel(state, params)`: impulse and work of a part."""
     turns = step_terms(spec).turns
 
-    def add_work(bodies, params):
+    def add_work(state, params):
+        bodies = state.bodies
         for i in range(bodies.shape[0]):
             body = bodies[i]
             if body.inv_m == 0.0:
