@@ -139,7 +139,7 @@ def test_a_push_across_a_gap() -> None:
 
 
 def test_of_redundant_impulses_those_cost_nothing_that_the_laws_ask_for() -> None:
-    """Slip of 5 m/s at mu = 0.5: friction of 1 N s against it, whose energy is what slip requires."""
+    """Slip of 5 m/s at mu = 0.5: 1 N s of friction against it takes what slip requires."""
     contacts = SimpleNamespace(
         mu=np.array([0.5]), restitution=np.array([0.5]), rigid=np.array([True])
     )
