@@ -11,7 +11,7 @@ from __future__ import annotations
 import pickle
 import struct
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -64,11 +64,11 @@ class KernelCache:
 
     def path(self, key: str) -> Path:
         """Return the file of `key`."""
-        return self.cache_path / f"{self._name()}-{key[:24]}.kernel"
+        return self.cache_path / f"{self._name()}-{key[:24]}{kernel_store.KERNEL}"
 
-    def holds(self) -> bool:
-        """Whether some compiled code of this kernel and this build is on disk."""
-        return any(self.cache_path.glob(f"{self._name()}-*.kernel"))
+    def is_of(self, names: Container[str]) -> bool:
+        """Whether code of this kernel and this build is among `kernel_store.kernels_on_disk`."""
+        return self._name() in names
 
     def load_overload(self, signature: Any, target_context: Any) -> Any:
         """Return the compiled kernel for `signature`, or None; a damaged file counts as absent."""

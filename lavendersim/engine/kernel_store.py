@@ -23,7 +23,8 @@ from .sources import source_hash
 DIRECTORY_VARIABLE = "LAVENDER_CACHE_DIR"
 LIMIT = 1_000_000_000  # [byte] of all that is kept: some thousand plans
 NAMES = ".names"  # what kernels a plan has (`composition`)
-SUFFIXES = (".kernel", ".part", ".object", NAMES)
+KERNEL = ".kernel"  # before it `-` and the key of its arguments
+SUFFIXES = (KERNEL, ".part", ".object", NAMES)
 ANEW = "kernels are compiled anew in every process"
 
 
@@ -66,6 +67,16 @@ def _place() -> tuple[Path, str]:
     # Never in a shared temporary folder: who made the directory there first, would be believed.
     refusal = f"{path} is no directory that this user alone can write"
     return Path(), f"{refusal}, {DIRECTORY_VARIABLE} names another: {ANEW}"
+
+
+def kernels_on_disk() -> set[str]:
+    """Return what the names of all whole kernels that are kept begin with, before their keys."""
+    place = directory()[0]
+    if not place.name:
+        return set()
+    with contextlib.suppress(OSError):
+        return {name.rpartition("-")[0] for name in os.listdir(place) if name.endswith(KERNEL)}
+    return set()
 
 
 def read(path: Path) -> bytes | None:

@@ -13,6 +13,7 @@ log          the trace row of the step
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
@@ -33,6 +34,7 @@ from .integrate import (
     make_undo,
 )
 from .kernel_cache import cached
+from .kernel_store import kernels_on_disk
 from .overlooked_points import make_forget_whole
 from .parts import has_parts, make_end_step, make_forget_history, make_gather_parts
 from .records import (
@@ -341,5 +343,18 @@ def advance_for(spec: Spec) -> Any:
 
 def is_compiled(spec: Spec) -> bool:
     """Whether the kernel of `spec` is compiled already, in this process or on disk."""
-    dispatcher = advance_for(spec)
-    return bool(dispatcher.overloads) or dispatcher._cache.holds()
+    return not uncompiled([spec])
+
+
+def uncompiled(specs: Iterable[Spec]) -> list[Spec]:
+    """Return the specs, each once, whose kernel is compiled neither in this process nor on disk.
+
+    The disk is read once for all of them: it may hold tens of thousands of files.
+    """
+    kept = kernels_on_disk()
+    kernels = {spec: advance_for(spec) for spec in specs}
+    return [
+        spec
+        for spec, kernel in kernels.items()
+        if not kernel.overloads and not kernel._cache.is_of(kept)
+    ]

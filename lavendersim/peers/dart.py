@@ -49,6 +49,7 @@ PEER: Final = Peer(
     iterations="none by Dantzig's method, which is direct; by Gauss-Seidel at most as many as are "
     "set, it does not report how many",
     bounded=True,
-    capacity="100,000 contacts, instead of its own 1000; the step that has more ends the run",
+    capacity="fewer than its own 1000 contacts, which its Python cannot raise: the step that has "
+    "as many ends the run",
     repeats="the same bits on one machine",
 )

@@ -1,4 +1,7 @@
-"""The process of an engine from outside: starts it, yields its messages, sees it crash or hang."""
+"""The process of an engine from outside: starts it, yields its messages, sees it crash or hang.
+
+A step that computes for too long is another end than one that waits for what never comes.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +10,17 @@ import pickle
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Generator
 from multiprocessing import Pipe
+from multiprocessing.connection import Connection
 from tempfile import TemporaryDirectory, TemporaryFile
 from typing import IO, Any, Final
 
 from lavendersim.peers.messages import Built, Ended, States, Task
 
-SILENCE: Final = 60.0  # [s] without a word: it hangs
+SILENCE: Final = 60.0  # [s] without a word, of the processor where it computes
+IDLE: Final = 0.01  # of the processor: it waits, for what does not come
 MODULE: Final = "lavendersim.peers.child"
 # One thread, whatever an engine would take.
 THREADS: Final = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
@@ -60,8 +66,8 @@ def messages_of(
             except BrokenPipeError:
                 pass  # it died before: its end says so
             while True:
-                if not receiver.poll(silence):
-                    yield Ended(f"hangs: no step was done in {silence:g} s")
+                if why := _unanswered(receiver, process.pid, silence):
+                    yield Ended(why)
                     return
                 try:
                     message: Any = receiver.recv()
@@ -75,6 +81,33 @@ def messages_of(
             process.kill()
             process.wait()
             receiver.close()
+
+
+def _unanswered(receiver: Connection, pid: int, silence: float) -> str:
+    """Wait for a message; returns why there will be none, empty once it is there.
+
+    Of an engine that computes the processor's seconds count, so that other work on the machine ends
+    none.
+    """
+    began = last = _computed(pid)
+    while not receiver.poll(silence):
+        now = _computed(pid)
+        if now - began >= silence:
+            return f"takes too long: no step was done in {silence:g} s of the processor"
+        if not now - last > IDLE * silence:
+            return f"hangs: no step was done in {silence:g} s"
+        last = now
+    return ""
+
+
+def _computed(pid: int) -> float:
+    """Return how much of the processor a process has had [s]; NaN where nobody says."""
+    if not sys.platform.startswith("linux"):
+        return float("nan")
+    try:
+        return time.clock_gettime((~pid << 3) | 2)  # clock_getcpuclockid(3)
+    except OSError:  # it has ended
+        return float("nan")
 
 
 def _death(code: int, output: IO[bytes]) -> str:

@@ -14,7 +14,7 @@ from typing import Final
 
 from lavendersim.cell import CellConfig
 from lavendersim.engine.spec import Spec
-from lavendersim.engine.step import advance_for, is_compiled
+from lavendersim.engine.step import advance_for, uncompiled
 from lavendersim.scene.build import build
 
 from .workers import end_with_parent
@@ -28,7 +28,7 @@ def compiling_ahead(specs: Sequence[Spec]) -> str:
 
     An engine counts that has no kernel yet.
     """
-    cold = sum(not is_compiled(spec) for spec in dict.fromkeys(specs))
+    cold = len(uncompiled(specs))
     seconds = PER_ENGINE * cold
     if seconds < WORTH_SAYING:
         return ""
@@ -45,7 +45,7 @@ def compile_times(
 
     progress: called with how many of the missing ones are compiled, and how many were missing.
     """
-    times = {spec: known for spec in specs if (known := _known(config, spec)) is not None}
+    times = _known(config, specs)
     missing = [spec for spec in specs if spec not in times]
     if missing:
         progress(0, len(missing))
@@ -67,14 +67,18 @@ def compile_times(
     return times
 
 
-def _known(config: CellConfig, spec: Spec) -> float | None:
-    """Return the time that is kept with a kernel, if it was compiled alone."""
-    advance_for(spec)
-    if not is_compiled(spec):
-        return None
-    build(config, spec).engine(spec).advance(0)
-    compiled = advance_for(spec)._cache.compiled()
-    return compiled.seconds if compiled is not None and compiled.alone else None
+def _known(config: CellConfig, specs: Sequence[Spec]) -> dict[Spec, float]:
+    """Return the times that are kept with kernels, of those that were compiled alone."""
+    cold = set(uncompiled(specs))
+    times = {}
+    for spec in specs:
+        if spec in cold:
+            continue
+        build(config, spec).engine(spec).advance(0)
+        compiled = advance_for(spec)._cache.compiled()
+        if compiled is not None and compiled.alone:
+            times[spec] = compiled.seconds
+    return times
 
 
 def compile_anew(config: CellConfig, spec: Spec) -> float:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from lavendersim.durable_files import write_whole
+from lavendersim.engine.spec import Spec
 from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment import Cell, Experiment
 from lavendersim.experiment.models.cost import FEW, FEWEST_REPEATS, KNOBS
@@ -29,7 +30,7 @@ from .compile_times import compiling_ahead
 from .cost_engines import able_engines
 from .cost_errors import SettingError, SettingRun, errors_of, law_of, orders_of, runs_of
 from .cost_targets import across_engines, answers, front_of_engine
-from .cost_times import Clocked, Times, engines_timed, times_of
+from .cost_times import Clocked, Times, engine_timed, times_of
 from .environment import machine
 from .experiment_run import Finished, run
 from .json_table import text_of
@@ -98,19 +99,17 @@ def take_cost(
     tables: list[CostTable] = []
     each = len(experiment.cells())
     by_setting = [grid.cells()[place * each : (place + 1) * each] for place in range(len(settings))]
-    timed = zip(settings, by_setting, strict=True)
-    if sentence := compiling_ahead(
-        engines_timed([cells for setting, cells in timed if setting.role != "truth"])
-    ):
+    timed = [one for one, setting in enumerate(settings) if setting.role != "truth"]
+    specs = [engine_timed(_as_written(by_setting[one])) for one in timed]
+    if sentence := compiling_ahead([spec for spec in specs if spec is not None]):
         progress.note(sentence)
 
     def closing(finished: Finished, measured: list[dict[str, Any]]) -> None:
         runs = runs_of(settings, finished, measured)
         errors = errors_of(experiment, runs)
         clocked = [
-            _clocked(cells, one)
-            for cells, one in zip(by_setting, runs, strict=True)
-            if one.setting.role != "truth"
+            _clocked(by_setting[one], runs[one], spec)
+            for one, spec in zip(timed, specs, strict=True)
         ]
         spec = experiment.config.cost
         assert spec is not None
@@ -161,10 +160,16 @@ def take_cost(
     return Costed(finished, tables[0])
 
 
-def _clocked(cells: Sequence[Cell], run: SettingRun) -> Clocked:
-    """Return what is timed of a setting: the start as written, whose cells stand for the others."""
-    taken = [place for place, cell in enumerate(cells) if not start_of(cell.coordinates)]
-    return Clocked([cells[one] for one in taken], [run.outcomes[one].steps for one in taken])
+def _as_written(cells: Sequence[Cell]) -> list[Cell]:
+    """Return which cells of a setting are timed: those that start as written, for all others."""
+    return [cell for cell in cells if not start_of(cell.coordinates)]
+
+
+def _clocked(cells: Sequence[Cell], run: SettingRun, spec: Spec | None) -> Clocked:
+    """Return what is timed of a setting, by its engine."""
+    steps = {cell.index: one.steps for cell, one in zip(cells, run.outcomes, strict=True)}
+    written = _as_written(cells)
+    return Clocked(written, [steps[cell.index] for cell in written], spec)
 
 
 def _rows(

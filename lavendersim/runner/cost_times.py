@@ -30,10 +30,11 @@ Engines = list[tuple[Timed | TimedElsewhere, Fraction]]  # with their timesteps 
 
 
 class Clocked(NamedTuple):
-    """One setting to be timed: its cells, and how many steps each of them got."""
+    """One setting to be timed."""
 
     cells: Sequence[Cell]
-    steps: Sequence[int]
+    steps: Sequence[int]  # that each of them got
+    spec: Spec | None  # see `engine_timed`
 
 
 class Times(NamedTuple):
@@ -51,21 +52,20 @@ def times_of(
 
     begin: the simulated time [s] at which timing begins.
     """
-    specs = [_spec_of(each) for each in settings]
-    own = [(each, spec) for each, spec in zip(settings, specs, strict=True) if spec is not None]
+    own = list(dict.fromkeys(each.spec for each in settings if each.spec is not None))
     seconds = {}
     if own:
         seconds = compile_times(
-            own[0][0].cells[0].config,
-            list(dict.fromkeys(spec for _, spec in own)),
+            next(each for each in settings if each.spec is not None).cells[0].config,
+            own,
             workers,
             lambda done, total: report("compiling engines to time", done, total),
         )
     with timing_servers() as servers:
         engines = []
-        for done, (each, spec) in enumerate(zip(settings, specs, strict=True)):
+        for done, each in enumerate(settings):
             report("settings made ready", done, len(settings))
-            engines.append(_engines(each, spec, begin, servers))
+            engines.append(_engines(each, begin, servers))
         samples: list[list[float]] = [[] for _ in settings]
         order = [place for place, timed in enumerate(engines) if timed]
 
@@ -81,29 +81,23 @@ def times_of(
         taken = take_rounds("rounds of all settings", repeats, one, widths, report)
     times = [
         Times(
-            [] if any(math.isnan(one) for one in each) else each[: taken.rounds],
-            0.0 if spec is None else seconds[spec],
+            [] if any(math.isnan(one) for one in found) else found[: taken.rounds],
+            0.0 if each.spec is None else seconds[each.spec],
             sum(float(engine.steps * step) for engine, step in timed),
         )
-        for each, spec, timed in zip(samples, specs, engines, strict=True)
+        for each, found, timed in zip(settings, samples, engines, strict=True)
     ]
     return times, taken
 
 
-def engines_timed(cells: Sequence[Sequence[Cell]]) -> list[Spec]:
-    """Return lavender's engines that are compiled and timed for settings, of each its cells."""
-    specs = [_spec_of(Clocked(each, ())) for each in cells]
-    return list(dict.fromkeys(spec for spec in specs if spec is not None))
-
-
-def _spec_of(each: Clocked) -> Spec | None:
-    """Return what lavender's engine of a setting is composed of; None of another engine's."""
-    if each.cells[0].config.engine is not None:
+def engine_timed(cells: Sequence[Cell]) -> Spec | None:
+    """Return what is timed for the cells of a setting; None: another engine than lavender's."""
+    if cells[0].config.engine is not None:
         return None
-    return union([plan_of_cell(cell, False) for cell in each.cells]).spec
+    return union([plan_of_cell(cell, False) for cell in cells]).spec
 
 
-def _engines(each: Clocked, spec: Spec | None, begin: float, servers: Servers) -> Engines:
+def _engines(each: Clocked, begin: float, servers: Servers) -> Engines:
     """Return an engine a cell, with its timestep [s]; none of cells that end before timing begins.
 
     A cell that diverged is timed up to the step before it did.
@@ -116,12 +110,12 @@ def _engines(each: Clocked, spec: Spec | None, begin: float, servers: Servers) -
         if last <= first:
             continue
         shortest = SAMPLE_NS // len(each.cells)
-        if spec is None:
+        if each.spec is None:
             timed = TimedElsewhere(cell.config, first, last - first, shortest, servers)
             engines.append((timed, timestep))
             continue
         try:
-            own = Timed(cell.config, spec, first, last - first, shortest=shortest)
+            own = Timed(cell.config, each.spec, first, last - first, shortest=shortest)
         except Diverged:  # without its records an engine takes the same steps: never
             continue
         engines.append((own, timestep))

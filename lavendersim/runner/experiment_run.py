@@ -213,12 +213,12 @@ def complete(
     done: those that ended before, by the names of their logs. For who holds the directory.
     """
     from .compile_times import compiling_ahead
-    from .overheads import engines_timed, take_overheads, write_overheads
+    from .overheads import pairs_timed, specs_of, take_overheads, write_overheads
     from .plans import distinct
 
     experiment, cells = prepared.experiment, prepared.cells
-    takes_overheads = overheads and experiment.config.overhead is not None
-    if takes_overheads and (sentence := compiling_ahead(engines_timed(experiment))):
+    pairs = pairs_timed(experiment) if overheads and experiment.config.overhead else None
+    if pairs is not None and (sentence := compiling_ahead(specs_of(pairs))):
         progress.note(sentence)
     (directory / "cells").mkdir(exist_ok=True)
     write_whole(directory / CONFIG, experiment.text, flush=False)
@@ -239,8 +239,8 @@ def complete(
     measured = [taken[cell.index].values for cell in result.run.cells]
     del taken
     table = None
-    if takes_overheads:
-        table = take_overheads(experiment, jobs, progress.timing)
+    if pairs is not None:
+        table = take_overheads(experiment, pairs, jobs, progress.timing)
         write_overheads(directory / OVERHEADS, table)
     with uncollected():
         write_results(result, measured, table)

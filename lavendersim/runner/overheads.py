@@ -55,17 +55,20 @@ def _named(experiment: Experiment) -> tuple[str, ...]:
 
 
 def take_overheads(
-    experiment: Experiment, workers: int = 1, report: Report = lambda what, done, total: None
+    experiment: Experiment,
+    pairs: Sequence[EnginePair],
+    workers: int = 1,
+    report: Report = lambda what, done, total: None,
 ) -> OverheadTable:
     """Return what the effects of an experiment's only cell cost, as plain data.
 
-    workers: processes that compile. report: called with what is done, how far, and of how many.
+    pairs: see `pairs_timed`. workers: processes that compile. report: called with what is done, how
+    far, and of how many.
     """
     spec = experiment.config.overhead
     assert spec is not None
     (cell,) = experiment.cells()
-    pairs = _pairs(experiment)
-    specs = _specs(pairs)
+    specs = specs_of(pairs)
     seconds = compile_times(
         cell.config,
         specs,
@@ -81,12 +84,8 @@ def take_overheads(
     return replace(table, interrupted=taken.interrupted, only_required=spec.effects == REQUIRED)
 
 
-def engines_timed(experiment: Experiment) -> list[Spec]:
+def pairs_timed(experiment: Experiment) -> list[EnginePair]:
     """Return the engines that are compiled and timed for the overheads of an experiment."""
-    return _specs(_pairs(experiment))
-
-
-def _pairs(experiment: Experiment) -> list[EnginePair]:
     spec = experiment.config.overhead
     assert spec is not None
     (cell,) = experiment.cells()
@@ -94,7 +93,8 @@ def _pairs(experiment: Experiment) -> list[EnginePair]:
     return [pair for pair in pairs if pair.required or spec.effects != REQUIRED]
 
 
-def _specs(pairs: Sequence[EnginePair]) -> list[Spec]:
+def specs_of(pairs: Sequence[EnginePair]) -> list[Spec]:
+    """Return what the engines of some pairs are composed of, each once."""
     return list(
         dict.fromkeys(each for pair in pairs for each in (pair.off, pair.on) if each is not None)
     )

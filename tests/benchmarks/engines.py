@@ -10,7 +10,8 @@ machine. Kept in docs/engines are every entry of the matrix (check.json), every 
 sample of its time (cost.json), and commands, commit, versions, bytes and SHA-256 of every log
 (logs.json). Logs themselves are too large for a repository. The same versions make the same bytes
 on a machine like it: `--compare` makes them again, of all commands or of some cases of the matrix,
-and says of each whether it is the same.
+and says of each whether it is the same. A log has its config as its commit writes it, and cells are
+named by that: they are made by the sources of the commit that the kept ones are of.
 """
 
 from __future__ import annotations
@@ -18,9 +19,12 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
+import os
 import subprocess
 import sys
+import tarfile
 from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -82,20 +86,41 @@ def take_large(runs: Path) -> None:
     keep_large(json.loads(done.stdout), made(runs))
 
 
-def compare(cases: Sequence[str], runs: Path) -> list[str]:
-    """Make logs again, of some cases or of all commands; returns what is other than is kept."""
+def compare(cases: Sequence[str], place: Path) -> list[str]:
+    """Make logs again, of some cases or of all commands; returns what is other than is kept.
+
+    place: where sources and runs are left.
+    """
     kept = json.loads((KEPT / "logs.json").read_text())
-    commands = [words for name, words in COMMANDS.items() if name == "check" or not cases]
+    sources, runs = place / "sources", place / "runs"
+    put_sources(kept["commit"], sources)
+    commands = [words for name, words in kept["commands"].items() if name == "check" or not cases]
     for words in commands:
-        left = [one for one in words if not cases or is_asked(one, cases)]
-        subprocess.run([*left, "--runs", str(runs)], cwd=ROOT, stdout=subprocess.DEVNULL)
+        lavender, *left = [one for one in words.split() if not cases or is_asked(one, cases)]
+        assert lavender == "lavender"
+        subprocess.run(
+            [sys.executable, "-m", "lavender_cli.main", *left, "--runs", str(runs)],
+            cwd=sources,
+            env=os.environ | {"PYTHONPATH": str(sources)},
+            stdout=subprocess.DEVNULL,
+        )
     now = made(runs)
     differ = [
         f"{name}: {now[name]}, the kept logs are of {kept[name]}"
-        for name in ("commit", "processor", "versions")
+        for name in ("processor", "versions")
         if now[name] != kept[name]
     ]
     return differ + unequal_logs(kept["sha256"], now["sha256"])
+
+
+def put_sources(commit: str, folder: Path) -> None:
+    """Put the sources of a commit into a folder, so that Python finds them there."""
+    packed = subprocess.run(["git", "archive", commit], cwd=ROOT, capture_output=True)
+    if packed.returncode:
+        sys.exit(f"commit {commit}, of which logs are kept, is not in this clone")
+    with tarfile.open(fileobj=BytesIO(packed.stdout)) as archive:
+        archive.extractall(folder, filter="data")
+    (folder / "lavender_cli").symlink_to("cli")
 
 
 def is_asked(word: str, cases: Sequence[str]) -> bool:
@@ -319,8 +344,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--compare", nargs="*", metavar="CASE")
     given = parser.parse_args(arguments)
     if given.compare is not None:
-        with TemporaryDirectory() as runs:
-            differ = compare(given.compare, Path(runs))
+        with TemporaryDirectory() as place:
+            differ = compare(given.compare, Path(place))
         sys.exit("\n".join(differ) if differ else 0)
     if given.large:
         take_large(given.runs.resolve())

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -42,6 +45,26 @@ def test_some_cases_alone_may_be_made_again() -> None:
     left = [word for word in words if engines.is_asked(word, ["rest"])]
     assert [word for word in left if word.endswith(".yaml")] == ["configs/scenes/rest.yaml"]
     assert left[-4:] == ["--engine", "all", "--yes", "--json"]
+
+
+def test_logs_are_made_again_by_the_sources_of_the_commit_that_they_are_of(tmp_path: Path) -> None:
+    """Of another commit configs have other keys, and every log other bytes."""
+    head = engines._git("rev-parse", "HEAD")
+    if not head:
+        pytest.skip("no git, or no clone")
+    engines.put_sources(head, tmp_path / "sources")
+    ask = "import lavendersim, lavender_cli.main as cli; print(lavendersim.__file__, cli.__file__)"
+    found = subprocess.run(
+        [sys.executable, "-c", ask],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(tmp_path / "sources")},
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split()
+    assert all(one.startswith(str(tmp_path / "sources")) for one in found)
+    with pytest.raises(SystemExit, match="is not in this clone"):
+        engines.put_sources("0" * 40, tmp_path / "none")
 
 
 def test_an_engine_that_misses_the_target_says_how_near_it_came() -> None:

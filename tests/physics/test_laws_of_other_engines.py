@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lavendersim.errors import NotReportedError
-from lavendersim.peers.catalogue import PEERS, peer_of
+from lavendersim.peers.catalogue import PEERS, installed_version, peer_of
 from tests.engines import BALL, BOX, log_of, needs, run_by
 
 
@@ -102,11 +102,14 @@ def test_reported_impulses_are_all_that_changes_momentum(tmp_path: Path) -> None
 
 @needs("mujoco")
 def test_a_log_has_the_columns_of_ours_and_reasons_for_the_others(tmp_path: Path) -> None:
-    log = log_of(run_by(BOX, "mujoco", tmp_path))
+    log = log_of(run_by(BOX, "mujoco", tmp_path, "engines: {mujoco: {iterations: 50}}"))
     assert len(log.step) == 121
     assert log.pose.shape == (121, 2, 7)
     assert log.velocity.shape == (121, 2, 6)
-    assert log.metadata["engine"]["name"] == "mujoco"
+    made_by = log.metadata["engine"]
+    assert (made_by["name"], made_by["settings"]) == ("mujoco", "iterations: 50")
+    assert made_by["version"] == f"MuJoCo {installed_version('mujoco')}"
+    assert made_by["law"] == PEERS["mujoco"].law
     with pytest.raises(NotReportedError, match=r"no /step\.residual: MuJoCo does not report it"):
         log.step["residual"]
     with pytest.raises(NotReportedError, match=r"no /contacts\.approach_velocity: MuJoCo"):

@@ -19,7 +19,6 @@ DETECTORS = {
     "bullet": dartpy.collision.BulletCollisionDetector,
     "dart": dartpy.collision.DARTCollisionDetector,
 }
-MOST_CONTACTS = 100_000  # its own 1000 would be cut off without a word
 
 
 class World:
@@ -43,7 +42,8 @@ class World:
             options.mEnabled, options.mMinRows = True, 1
             options.mMaxIterations = settings["sweeps"]
             solver.setMatrixFreeContactSolverOptions(options)
-        solver.getCollisionOption().maxNumContacts = MOST_CONTACTS
+        # A copy, which cannot be given back: what it has beyond these it leaves out.
+        self._most_contacts = solver.getCollisionOption().maxNumContacts
         # Both of its rules are given: the lesser friction, the product of restitutions.
         self._friction = scene.values("friction", PEER)
         self._restitution = scene.values("restitution", PEER)
@@ -115,7 +115,7 @@ class World:
 
     def is_full(self) -> bool:
         """Return whether the last step had no room for more contacts."""
-        return bool(self._world.getLastCollisionResult().getNumContacts() >= MOST_CONTACTS)
+        return bool(self._world.getLastCollisionResult().getNumContacts() >= self._most_contacts)
 
     def contacts(self) -> list[tuple[float, ...]]:
         """Return the contacts of the last step. Normals and forces are on its first body: our B."""

@@ -46,6 +46,16 @@ def names_in(store: Path) -> set[str]:
     return {path.name.split("-")[0] for path in store.iterdir() if path.name != NAME}
 
 
+def test_a_kernel_on_disk_is_known_among_others_whatever_its_arguments(store: Path) -> None:
+    kept = keep("kept")
+    assert kept.is_of(kernel_store.kernels_on_disk())
+    other = KernelCache(Spec(effects=("other",)), kept.kernel)
+    assert not other.is_of(kernel_store.kernels_on_disk())
+    for path in store.glob("*.kernel"):
+        path.rename(path.with_suffix(".part"))
+    assert kernel_store.kernels_on_disk() == set()
+
+
 def test_the_kernel_not_used_for_longest_makes_room(
     store: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

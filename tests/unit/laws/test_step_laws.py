@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from made_motion import BALLS, DT, MASS, RADIUS, G, ball, given, motion, states
 
 from lavendersim.laws.judging import JudgedLaws, judge_laws
-from lavendersim.laws.step_laws import LAWS
+from lavendersim.laws.step_laws import LAWS, _cost
 
 REST = [0.0, 0.0, RADIUS]
 WEIGHT = MASS * G * DT  # [N s] that the floor gives a ball at rest
@@ -134,3 +136,19 @@ def test_a_push_across_a_gap() -> None:
     assert found.named is not None
     assert found.named.violation.number == pytest.approx(WEIGHT, rel=EXACT)
     assert found.named.violation.gap == pytest.approx(0.003, rel=1e-9)
+
+
+def test_of_redundant_impulses_those_cost_nothing_that_the_laws_ask_for() -> None:
+    """Slip of 5 m/s at mu = 0.5: 1 N s of friction against it takes what slip requires."""
+    contacts = SimpleNamespace(
+        mu=np.array([0.5]), restitution=np.array([0.5]), rigid=np.array([True])
+    )
+    points = SimpleNamespace(
+        contacts=contacts, after=np.array([[1.0, 3.0, 4.0]]), approach=np.array([2.0])
+    )
+    (cost,) = _cost(points)
+    assert cost @ [2.0, -0.6, -0.8] == pytest.approx(0.0, abs=EXACT)
+    assert cost @ [2.0, 0.0, 0.0] == 5.0  # 2 N s at 0.5 of 5 m/s that friction does not take
+    points.after[0, 0] = 1.25  # parts faster than e times the approach, and is pushed
+    (faster,) = _cost(points)
+    assert faster @ [2.0, -0.6, -0.8] == pytest.approx(0.5, abs=EXACT)

@@ -19,4 +19,6 @@ if __name__ == "__main__":
         with open("ENGINE_LOG.TXT", "w") as file:
             file.write("what an engine leaves where it works")
         os._exit(3)
+    while how == "compute":
+        pass
     time.sleep(60)

@@ -114,17 +114,30 @@ def test_a_step_whose_contacts_have_no_room_ends_the_run_with_a_sentence(tmp_pat
     assert len(log_of(enough).step) == 3
 
 
+# A contact a ball, each a problem of its own.
+FLOOR_OF_BALLS = """
+scene:
+  bodies:
+    floor: {shape: {kind: plane}}
+  arrangements:
+    ball: {kind: grid, counts: [27, 37, 1], spacing: [0.3, 0.3, 1], origin: [0, 0, 0.099],
+           body: {shape: {kind: sphere, radius: 0.1}, mass: 1}}
+numerics: {timestep: 1/240}
+duration: 1/120
+"""
+
+
 @needs("dart")
-def test_dart_is_full_where_it_has_as_many_contacts_as_it_takes(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize(("rows", "carried", "is_full"), [(27, 999, False), (28, 1000, True)])
+def test_dart_is_full_at_the_limit_of_contacts_that_it_really_has(
+    rows: int, carried: int, is_full: bool
 ) -> None:
-    """Two boxes have a contact each, or more."""
+    """Of 28 by 37 balls 36 have no contact and fall on."""
     from lavendersim.peers.adapters import dart
 
-    few = FLOOR_OF_BOXES.replace("[15, 15, 1]", "[2, 1, 1]")
-    scene = Scene(load_experiment_text(few, "boxes.yaml").cells()[0].config)
-    for most, is_full in ((1, True), (100, False)):
-        monkeypatch.setattr(dart, "MOST_CONTACTS", most)
-        world = dart.World(scene, {})
-        world.step()
-        assert world.is_full() == is_full
+    text = FLOOR_OF_BALLS.replace("[27,", f"[{rows},")
+    world = dart.World(Scene(load_experiment_text(text, "balls.yaml").cells()[0].config), {})
+    world.step()
+    falling = np.count_nonzero(world.velocities()[:, 2] < -0.5 * 9.81 / 240)
+    assert (len(world.contacts()), falling) == (carried, rows * 37 - carried)
+    assert world.is_full() == is_full

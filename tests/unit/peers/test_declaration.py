@@ -20,6 +20,14 @@ def test_every_engine_states_its_law_and_whether_it_repeats() -> None:
     assert all(peer.iterations and peer.capacity for peer in PEERS.values())
 
 
+def test_own_defaults_are_a_variant_and_tuned_ones_have_their_reason() -> None:
+    for name, peer in PEERS.items():
+        assert not peer.variants[name].settings
+        tuned = {variant: one for variant, one in peer.variants.items() if variant != name}
+        assert tuned
+        assert all(one.settings and one.doc for one in tuned.values())
+
+
 def test_what_is_swept_are_variants_and_settings_that_there_are_defaults_among_them() -> None:
     for name, peer in PEERS.items():
         settings = {one.name for one in peer.settings}

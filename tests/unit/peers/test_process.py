@@ -18,11 +18,12 @@ ENGINE = "tests.unit.peers.crashing_engine"
         ("crash", "crashed: its process was ended by SIGSEGV"),
         ("exit", "crashed: its process exited with 3 (it is out of memory)"),
         ("hang", "hangs: no step was done in 3 s"),
+        ("compute", "takes too long: no step was done in 1 s of the processor"),
     ],
 )
 def test_how_a_process_goes_wrong_is_its_end(how: str, reported: str) -> None:
     # a process that crashes must have started within the silence, on a loaded machine too
-    silence = 3.0 if how == "hang" else 60.0
+    silence = {"hang": 3.0, "compute": 1.0}.get(how, 60.0)
     found = list(messages_of(Task("", how, {}), silence, ENGINE))
     assert found == [Ended(reported)]
 

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import pytest
 
+from lavendersim.engine import step
 from lavendersim.engine.spec import Spec
 from lavendersim.runner import compile_times as module
 from lavendersim.runner.compile_times import compile_times
@@ -39,7 +40,7 @@ def _pool(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_only_what_is_not_known_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
     known = {SPECS[1]: 0.25}
-    monkeypatch.setattr(module, "_known", lambda config, spec: known.get(spec))
+    monkeypatch.setattr(module, "_known", lambda config, specs: dict(known))
     said: list[tuple[int, int]] = []
     times = compile_times(CONFIG, SPECS, 8, lambda done, of: said.append((done, of)))
     assert times == {SPECS[0]: 1.0, SPECS[1]: 0.25, SPECS[2]: 3.0}
@@ -50,7 +51,7 @@ def test_only_what_is_not_known_is_compiled(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_where_all_is_known_no_process_is_started(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "_known", lambda config, spec: 0.5)
+    monkeypatch.setattr(module, "_known", lambda config, specs: dict.fromkeys(specs, 0.5))
     said: list[tuple[int, int]] = []
     assert set(compile_times(CONFIG, SPECS, 2, lambda *one: said.append(one)).values()) == {0.5}
     assert Pool.made == said == []
@@ -60,7 +61,7 @@ def test_where_all_is_known_no_process_is_started(monkeypatch: pytest.MonkeyPatc
 def test_no_more_processes_than_kernels(
     monkeypatch: pytest.MonkeyPatch, workers: int, expected: int
 ) -> None:
-    monkeypatch.setattr(module, "_known", lambda config, spec: None)
+    monkeypatch.setattr(module, "_known", lambda config, specs: {})
     compile_times(CONFIG, SPECS, workers, lambda done, of: None)
     assert Pool.made[0]["workers"] == expected
 
@@ -71,7 +72,7 @@ def test_what_is_compiled_first_is_said_where_it_takes_more_than_a_minute(
     """Three of four engines are cold: 54 s; four: 72 s, a minute; each is counted once."""
     specs = [*SPECS, Spec(effects=("gravity", "friction"))]
     kept = {specs[0]}
-    monkeypatch.setattr(module, "is_compiled", lambda spec: spec in kept)
+    monkeypatch.setattr(module, "uncompiled", lambda specs: set(specs) - kept)
     assert module.compiling_ahead(specs * 2) == ""
     kept.clear()
     said = "4 engines are compiled first, once: some 1 min of a processor"
@@ -92,8 +93,32 @@ def test_what_is_interrupted_waits_for_no_engine_that_nothing_compiles_yet(
         if done == 1:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(module, "_known", lambda config, spec: None)
+    monkeypatch.setattr(module, "_known", lambda config, specs: {})
     monkeypatch.setattr(Pool, "shutdown", ended)
     with pytest.raises(KeyboardInterrupt):
         compile_times(CONFIG, SPECS, 1, interrupted)
     assert ends[0] == {"wait": False, "cancel_futures": True}
+
+
+def test_the_folder_of_kernels_is_read_once_for_all_engines(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It may hold tens of thousands of files: of fifty engines, it would take seconds."""
+    read = []
+    monkeypatch.setattr(step, "kernels_on_disk", lambda: read.append("once") or set())
+    monkeypatch.setattr(step, "advance_for", lambda spec: Cold())
+    assert step.uncompiled(SPECS * 2) == SPECS
+    assert read == ["once"]
+
+
+class Cold:
+    """A kernel that is compiled nowhere."""
+
+    overloads: ClassVar[dict[Any, Any]] = {}
+
+    @property
+    def _cache(self) -> Cold:
+        return self
+
+    def is_of(self, names: set[str]) -> bool:
+        return "cold" in names

@@ -13,10 +13,12 @@ import pytest
 
 from lavendersim.errors import TraceError
 from lavendersim.experiment import load_experiment
+from lavendersim.experiment.cell import Cell
 from lavendersim.figures.work_precision import compose, draw_work_precision
 from lavendersim.measures.cost_table import CostRow
-from lavendersim.runner import open_run, run
+from lavendersim.runner import cost_times, open_run, run
 from lavendersim.runner.cost import Costed, take_cost
+from lavendersim.scene.plan import Plan, plan_of_cell
 from tests.bouncing_ball_config import BOUNCING_BALL
 from tests.older_runs import without_digests
 
@@ -159,6 +161,23 @@ def test_against_itself_the_truth_is_an_eighth_of_the_finest_step(tmp_path: Path
         errors = [abs(value - one) / 0.1 for value, one in zip(values, true, strict=True)]
         assert row.error == pytest.approx(max(errors), rel=1e-12)
     assert len(costed.table.rows) == len(cells) // 3 - 1
+
+
+def test_each_setting_is_planned_once_for_its_clock(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is said of compiling them, and what is compiled and timed, are of one plan."""
+    planned: list[int] = []
+
+    def noted(cell: Cell, record: bool) -> Plan:
+        planned.append(cell.index)
+        return plan_of_cell(cell, record)
+
+    monkeypatch.setattr(cost_times, "plan_of_cell", noted)
+    config = tmp_path / "ball.yaml"
+    config.write_text(BALL)
+    costed = take_cost(load_experiment(config), tmp_path / "runs")
+    assert planned == list(range(3 * len(costed.table.rows)))
 
 
 def test_a_setting_that_flies_apart_is_timed_up_to_there_and_stays(tmp_path: Path) -> None:

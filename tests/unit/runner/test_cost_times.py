@@ -8,7 +8,7 @@ import pytest
 
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner import cost_times, timed_engine
-from lavendersim.runner.cost_times import Clocked, times_of
+from lavendersim.runner.cost_times import Clocked, engine_timed, times_of
 
 BALL = """\
 scene:
@@ -71,7 +71,7 @@ class RealWorld(World):
 
 def clocked() -> Clocked:
     (cell,) = load_experiment_text(BALL, "ball.yaml").cells()
-    return Clocked([cell], [STEPS])
+    return Clocked([cell], [STEPS], engine_timed([cell]))
 
 
 def use(world: World, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -159,5 +159,7 @@ def test_several_cells_of_a_setting_cost_their_mean(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(timed_engine, "build", build)
     monkeypatch.setattr(timed_engine, "clock", lambda: ("fake", lambda: clock.now))
     (cell,) = clocked().cells
-    (times,), _ = times_of([Clocked([cell, cell], [STEPS, STEPS])], 0.0, 7, 1, silent)
+    (times,), _ = times_of(
+        [Clocked([cell, cell], [STEPS, STEPS], engine_timed([cell]))], 0.0, 7, 1, silent
+    )
     assert times.samples == pytest.approx([2000 * RATE] * 7, rel=1e-12)

@@ -52,7 +52,8 @@ def costed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def rows_of(text: str) -> dict[str, OverheadRow]:
-    table = overheads.take_overheads(load_experiment_text(text, "ball.yaml"))
+    experiment = load_experiment_text(text, "ball.yaml")
+    table = overheads.take_overheads(experiment, overheads.pairs_timed(experiment))
     return {row.effect: row for row in table.rows}
 
 
