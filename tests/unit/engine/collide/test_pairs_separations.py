@@ -138,11 +138,7 @@ def test_the_swept_distance_is_the_manifolds_and_never_more(seen):
     for i, _, _, size, manifold in looked_at(seen):
         distance, normal = found[i, 0], found[i, 1:]
         phi = manifold.phi.min()
-        grown = sum(
-            float(row["hx"])
-            for row in (sample.first[i], sample.second[i])
-            if solids.KINDS[row["shape"]] in ("sphere", "capsule")
-        )
+        grown = sum(map(solids.grown, sample.solids(i)))
         if planes or phi > -grown + 1e-9 * size:
             kept = slack(sample, i, phi)
             assert distance == pytest.approx(phi, abs=(SNAP + STALL) * size + CUT + kept)
