@@ -114,7 +114,7 @@ def off_ellipsoid(point: np.ndarray, half: np.ndarray) -> float:
     """
     squares, p = half**2, np.abs(point)
     longest = float(half.max())
-    low, high = -float(half.min()) ** 2, longest * float(np.linalg.norm(p)) + longest**2
+    low, high = -(float(half.min()) ** 2), longest * float(np.linalg.norm(p)) + longest**2
     for _ in range(200):
         t = 0.5 * (low + high)
         with np.errstate(divide="ignore", invalid="ignore"):

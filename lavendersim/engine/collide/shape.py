@@ -2,8 +2,9 @@
 
 A shape is its core, grown by a radius: a sphere is a point, a capsule a segment, grown by theirs,
 an ellipsoid a smooth body, grown by part of its least radius of curvature; boxes, cylinders and
-hulls are their own cores. A new convex shape is one file in `shapes` and a `Shape` in `shapes.DECLARED`: it collides with every other by GJK and EPA, where no file of `pairs`
-has a closed form. What it is to a config and to views: `cell/shapes`.
+hulls are their own cores. A new convex shape is one file in `shapes` and a `Shape` in
+`shapes.DECLARED`: it collides with every other by GJK and EPA, where no file of `pairs` has a
+closed form. What it is to a config and to views: `cell/shapes`.
 """
 
 from __future__ import annotations

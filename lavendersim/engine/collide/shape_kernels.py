@@ -124,7 +124,6 @@ def make_edge(spec: Spec) -> Any:
 def make_radius(spec: Spec) -> Any:
     """Return `kernel(body) -> radius of the ball that the core is grown by` [m]."""
 
-
     def maker_of(shape: Shape) -> Maker | None:
         own = shape.maker("make_radius")
         return own if own is not None or not shape.rounded else lambda _: own_radius

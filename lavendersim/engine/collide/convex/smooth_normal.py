@@ -1,8 +1,8 @@
 """Normal of the nearest points of a convex core A and an ellipsoid B, by Newton's method.
 
     s(n) = n . g(n),   g(n) = offset + p_B(-n) - q_A(n),   dg/dn = -(R_B + R_A)
-n leads from A to B; q_A, p_B are the points of the surfaces with the normals n and -n, R their radii
-of curvature as matrices across n. s is the separation along n, and is greatest where g is along n:
+n leads from A to B; q_A, p_B are the points of the surfaces with the normals n and -n, R their
+radii of curvature as matrices across n. s is the separation along n, and is greatest where g is along n:
     (R_A + R_B + s) d = g - s n,   n <- (n + d) / |n + d|
 The step is Newton's; it is halved while s would fall. The matrix is positive definite where bodies
 are apart or overlap by less than the least radius of curvature, so that near the nearest points
@@ -17,7 +17,6 @@ which: then the normal counts that separates the whole bodies most.
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import Any, NamedTuple
 
 from ...compile import inner, kernel, once
@@ -200,7 +199,7 @@ def beyond(part, n, g):
 
 @once
 def make_offered(spec: Any) -> Any:
-    """Return `kernel(a, b, offset, part, start, best, hulls)`: the better of `best` and a part's."""
+    """Return `kernel(a, b, offset, part, start, best, hulls)`: the better of `best` and it."""
     normal_of_part, separation_along = make_normal_of_part(spec), make_separation_along(spec)
     gap, radius = make_gap(spec), make_radius(spec)
 

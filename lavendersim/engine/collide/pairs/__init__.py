@@ -22,7 +22,7 @@ def by_gjk(a: str, b: str) -> ShapePair:
 
 
 def smooth(a: str) -> ShapePair:
-    """Return the pair of a shape with an ellipsoid: GJK and EPA, and Newton's method behind them."""
+    """Return the pair of a shape with an ellipsoid: Newton's method behind GJK and EPA."""
     return ShapePair(f"ellipsoid_{a}", (a, "ellipsoid"), "ellipsoid_convex")
 
 

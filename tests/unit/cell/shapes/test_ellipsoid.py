@@ -28,8 +28,9 @@ def test_mass_and_moments_are_those_of_the_integral() -> None:
 
 
 def test_equal_axes_are_a_ball() -> None:
-    ball, round_one = Sphere(kind="sphere", radius=0.3), Ellipsoid(
-        kind="ellipsoid", semi_axes=(0.3, 0.3, 0.3)
+    ball, round_one = (
+        Sphere(kind="sphere", radius=0.3),
+        Ellipsoid(kind="ellipsoid", semi_axes=(0.3, 0.3, 0.3)),
     )
     assert round_one.homogeneous().moments == pytest.approx(ball.homogeneous().moments, rel=4e-16)
     assert round_one.homogeneous().volume == pytest.approx(ball.homogeneous().volume, rel=4e-16)

@@ -27,9 +27,7 @@ def test_the_point_is_half_way_between_plane_and_surface(rng) -> None:
         local = matrix.T @ (surface - centre)
         assert abs(solids.off_surface(solid(b), surface)) < 1e-14
         outward = local / half**2
-        np.testing.assert_allclose(
-            outward / np.linalg.norm(outward), -matrix.T @ N, atol=1e-13
-        )
+        np.testing.assert_allclose(outward / np.linalg.norm(outward), -matrix.T @ N, atol=1e-13)
 
 
 def test_beyond_the_margin_there_is_none() -> None:
