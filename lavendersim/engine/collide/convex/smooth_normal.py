@@ -2,7 +2,7 @@
 
     s(n) = n . g(n),   g(n) = offset + p_B(-n) - q_A(n),   dg/dn = -(R_B + R_A)
 n leads from A to B; q_A, p_B are the points of the surfaces with the normals n and -n, R their
-radii of curvature as matrices across n. s is the separation along n, and is greatest where g is along n:
+radii of curvature as matrices across n. s is the separation along n, greatest where g is along n:
     (R_A + R_B + s) d = g - s n,   n <- (n + d) / |n + d|
 The step is Newton's; it is halved while s would fall. The matrix is positive definite where bodies
 are apart or overlap by less than the least radius of curvature, so that near the nearest points
