@@ -1,6 +1,6 @@
 """Ellipsoid of semi-axes a, b, c: V = 4/3 pi abc, J_x = (b^2 + c^2)/5.
 
-Its support is h(n) = |(a n_x, b n_y, c n_z)|. The point whose normal is n: (a^2 n_x, b^2 n_y, c^2 n_z) / h(n).
+h(n) = |(a n_x, b n_y, c n_z)|; the point whose normal is n: (a^2 n_x, b^2 n_y, c^2 n_z) / h(n)
 """
 
 from __future__ import annotations

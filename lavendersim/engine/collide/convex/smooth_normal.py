@@ -53,7 +53,7 @@ SAME = 1e-9
 CORNER, AXIS, CIRCLE, SMOOTH = 0, 1, 2, 3
 
 
-class Part(NamedTuple):
+class CorePart(NamedTuple):
     """A part of A's core that goes on for ever; relative to A's centre, world axes."""
 
     kind: int
@@ -237,14 +237,14 @@ def make_of_vertices(spec: Any) -> Any:
                 known = known or length(minus(p, witness(vertices[k]))) <= least
             if known:
                 continue
-            corner = Part(CORNER, p, none, 0.0, 0.0)
+            corner = CorePart(CORNER, p, none, 0.0, 0.0)
             best = offered(a, b, offset, corner, start, best, hulls)
             for k in range(i):
                 between = minus(p, witness(vertices[k]))
                 edge = length(between)
                 if edge > least:
                     middle = plus_scaled(p, -0.5, between)
-                    line = Part(AXIS, middle, divided(between, edge), 0.5 * edge, 0.0)
+                    line = CorePart(AXIS, middle, divided(between, edge), 0.5 * edge, 0.0)
                     best = offered(a, b, offset, line, start, best, hulls)
         return best
 
@@ -265,9 +265,9 @@ def make_of_cylinder(spec: Any) -> Any:
     def of_cylinder(a, b, offset, start, best, hulls):
         axis = Vec3(a.r02, a.r12, a.r22)
         end = a.hz if dot(axis, start) >= 0.0 else -a.hz
-        side = Part(AXIS, Vec3(0.0, 0.0, 0.0), axis, a.hz, a.hx)
+        side = CorePart(AXIS, Vec3(0.0, 0.0, 0.0), axis, a.hz, a.hx)
         best = offered(a, b, offset, side, start, best, hulls)
-        rim = Part(CIRCLE, scaled(end, axis), axis, 0.0, a.hx)
+        rim = CorePart(CIRCLE, scaled(end, axis), axis, 0.0, a.hx)
         return offered(a, b, offset, rim, start, best, hulls)
 
     return kernel(of_cylinder, spec)
@@ -291,7 +291,7 @@ def make_smooth_normal(spec: Any) -> Any:
         if smooth:
             if a.shape == ELLIPSOID:
                 none = Vec3(0.0, 0.0, 0.0)
-                whole = Part(SMOOTH, none, none, 0.0, 0.0)
+                whole = CorePart(SMOOTH, none, none, 0.0, 0.0)
                 return offered(a, b, offset, whole, n, best, hulls)
         by_parts = True
         if cylinders:

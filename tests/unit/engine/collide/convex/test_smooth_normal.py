@@ -13,7 +13,7 @@ from lavendersim.engine.collide.convex.smooth_normal import (
     AXIS,
     CIRCLE,
     CORNER,
-    Part,
+    CorePart,
     make_normal_of_part,
 )
 from lavendersim.engine.vectors import Vec3
@@ -21,7 +21,7 @@ from lavendersim.engine.vectors import Vec3
 NONE = Vec3(0.0, 0.0, 0.0)
 
 
-def found(part: Part, b: np.ndarray, start: np.ndarray) -> np.ndarray:
+def found(part: CorePart, b: np.ndarray, start: np.ndarray) -> np.ndarray:
     a = body("sphere", (0.1, 0, 0))
     kernel = interpreted(make_normal_of_part(spec_of("ellipsoid_sphere")))
     offset = Vec3(*solid(b).centre)
@@ -34,7 +34,7 @@ def test_the_normal_at_the_point_nearest_to_a_corner(rng) -> None:
         centre = 2.0 * convex.random_rotation(rng)[0]
         b = body("ellipsoid", rng.uniform(0.2, 0.6, 3), centre, convex.random_rotation(rng))
         start = centre / 2.0 + 0.5 * rng.uniform(-1, 1, 3)
-        n = found(Part(CORNER, NONE, NONE, 0.0, 0.0), b, start / np.linalg.norm(start))
+        n = found(CorePart(CORNER, NONE, NONE, 0.0, 0.0), b, start / np.linalg.norm(start))
         distance = solids.off_surface(solid(b), np.zeros(3))
         assert -solids.reach(solid(b), -n) == pytest.approx(distance, abs=1e-14)
 
@@ -46,7 +46,7 @@ def test_the_normal_across_an_axis_and_of_a_circle_separates_most(rng) -> None:
             along = convex.random_rotation(rng)[0]
             centre = 2.5 * convex.random_rotation(rng)[0]
             b = body("ellipsoid", rng.uniform(0.2, 0.6, 3), centre, convex.random_rotation(rng))
-            part = Part(kind, NONE, Vec3(*along), 1.0, 0.5 if kind == CIRCLE else 0.0)
+            part = CorePart(kind, NONE, Vec3(*along), 1.0, 0.5 if kind == CIRCLE else 0.0)
             n = found(part, b, centre / 2.5)
             assert np.linalg.norm(n) == pytest.approx(1.0, abs=1e-15)
 
