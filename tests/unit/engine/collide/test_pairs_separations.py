@@ -127,7 +127,7 @@ def test_coal_finds_the_same_distance_and_no_lesser_depth(seen):
             assert phi >= best - kept - share - (SNAP + STALL) * size - CUT
     assert apart > 60
     assert overlapping > 60
-    # coal's EPA gives up on some deep cylinders, and on more of deep ellipsoids: one in eight of two.
+    # coal's EPA gives up on some deep cylinders, and on one in eight of two deep ellipsoids.
     # `pairs/test_ellipsoid_convex.py` judges those by proofs and by scipy.
     gives_up = 0.1 * round_cores + 0.15 * ("ellipsoid" in seen[0].pair)
     assert silent <= min(gives_up, 0.15) * POSES
