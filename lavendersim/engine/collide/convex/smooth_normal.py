@@ -69,6 +69,7 @@ class Offer(NamedTuple):
     normal: Vec3
     separation: float
     proved: bool
+    start: Vec3  # the normal that searches begin at
 
 
 @inner
@@ -199,14 +200,14 @@ def beyond(part, n, g):
 
 @once
 def make_offered(spec: Any) -> Any:
-    """Return `kernel(a, b, offset, part, start, best, hulls)`: the better of `best` and it."""
+    """Return `kernel(a, b, offset, part, best, hulls)`: the better of `best` and it."""
     normal_of_part, separation_along = make_normal_of_part(spec), make_separation_along(spec)
     gap, radius = make_gap(spec), make_radius(spec)
 
-    def offered(a, b, offset, part, start, best, hulls):
+    def offered(a, b, offset, part, best, hulls):
         if best.proved:
             return best
-        n = normal_of_part(a, b, offset, part, start)
+        n = normal_of_part(a, b, offset, part, best.start)
         g, s = gap(a, b, offset, part, n), separation_along(a, b, offset, n, hulls)
         of_part = dot(n, g) + radius(b)
         if part.kind == AXIS:
@@ -215,7 +216,7 @@ def make_offered(spec: Any) -> Any:
         proved = beyond(part, n, g) + max(of_part - s, 0.0) <= PROVED * size
         # What is proved nearby separates no less than its start, but for round-off.
         if s > best.separation or (proved and s >= best.separation - PROVED * size):
-            return Offer(n, s, proved)
+            return Offer(n, s, proved, best.start)
         return best
 
     return kernel(offered, spec)
@@ -223,10 +224,10 @@ def make_offered(spec: Any) -> Any:
 
 @once
 def make_of_vertices(spec: Any) -> Any:
-    """Return `kernel(a, b, offset, start, best, count, scratch) -> Offer`, of corners and edges."""
+    """Return `kernel(a, b, offset, best, count, scratch) -> Offer`, of corners and edges."""
     offered = make_offered(spec)
 
-    def of_vertices(a, b, offset, start, best, count, scratch):
+    def of_vertices(a, b, offset, best, count, scratch):
         vertices, hulls = scratch.simplex, scratch.hulls
         least = SAME * (a.bound + b.bound)
         none = Vec3(0.0, 0.0, 0.0)
@@ -238,14 +239,14 @@ def make_of_vertices(spec: Any) -> Any:
             if known:
                 continue
             corner = CorePart(CORNER, p, none, 0.0, 0.0)
-            best = offered(a, b, offset, corner, start, best, hulls)
+            best = offered(a, b, offset, corner, best, hulls)
             for k in range(i):
                 between = minus(p, witness(vertices[k]))
                 edge = length(between)
                 if edge > least:
                     middle = plus_scaled(p, -0.5, between)
                     line = CorePart(AXIS, middle, divided(between, edge), 0.5 * edge, 0.0)
-                    best = offered(a, b, offset, line, start, best, hulls)
+                    best = offered(a, b, offset, line, best, hulls)
         return best
 
     return kernel(of_vertices, spec)
@@ -259,16 +260,16 @@ def witness(vertex):
 
 @once
 def make_of_cylinder(spec: Any) -> Any:
-    """Return `kernel(a, b, offset, start, best, hulls) -> Offer`, of the side and a rim."""
+    """Return `kernel(a, b, offset, best, hulls) -> Offer`, of the side and a rim."""
     offered = make_offered(spec)
 
-    def of_cylinder(a, b, offset, start, best, hulls):
+    def of_cylinder(a, b, offset, best, hulls):
         axis = Vec3(a.r02, a.r12, a.r22)
-        end = a.hz if dot(axis, start) >= 0.0 else -a.hz
+        end = a.hz if dot(axis, best.start) >= 0.0 else -a.hz
         side = CorePart(AXIS, Vec3(0.0, 0.0, 0.0), axis, a.hz, a.hx)
-        best = offered(a, b, offset, side, start, best, hulls)
+        best = offered(a, b, offset, side, best, hulls)
         rim = CorePart(CIRCLE, scaled(end, axis), axis, 0.0, a.hx)
-        return offered(a, b, offset, rim, start, best, hulls)
+        return offered(a, b, offset, rim, best, hulls)
 
     return kernel(of_cylinder, spec)
 
@@ -287,26 +288,26 @@ def make_smooth_normal(spec: Any) -> Any:
 
     def smooth_normal(a, b, offset, n, count, scratch):
         hulls = scratch.hulls
-        best = Offer(n, separation_along(a, b, offset, n, hulls), False)
+        best = Offer(n, separation_along(a, b, offset, n, hulls), False, n)
         if smooth:
             if a.shape == ELLIPSOID:
                 none = Vec3(0.0, 0.0, 0.0)
                 whole = CorePart(SMOOTH, none, none, 0.0, 0.0)
-                return offered(a, b, offset, whole, n, best, hulls)
+                return offered(a, b, offset, whole, best, hulls)
         by_parts = True
         if cylinders:
             if a.shape == CYLINDER:
-                best = of_cylinder(a, b, offset, n, best, hulls)
+                best = of_cylinder(a, b, offset, best, hulls)
                 by_parts = False
         if by_parts:
-            best = of_vertices(a, b, offset, n, best, count, scratch)
+            best = of_vertices(a, b, offset, best, count, scratch)
         if best.proved:
             return best
         face, outward = best_face(a, best.normal, hulls)
         if face >= 0:
             s = separation_along(a, b, offset, outward, hulls)
             if s >= best.separation - ROUND_OFF * (a.bound + b.bound):
-                return Offer(outward, s, False)
+                return Offer(outward, s, False, n)
         return best
 
     return kernel(smooth_normal, spec)
