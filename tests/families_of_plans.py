@@ -92,7 +92,7 @@ FAMILIES = (
             *("effects/prescribed_motion", "effects/varying_force", "language/events_on_states"),
             *("language/passages", "hard/structure/arch_of_seventeen_voussoirs"),
             *("trackers/pinched_between_pads", "trackers/three_balls"),
-            "trackers/pressed_against_a_wall",
+            *("trackers/pressed_against_a_wall", "scenes/rocking_ellipsoid"),
         ),
         (scenes.TURNING,),
         (
@@ -101,6 +101,7 @@ FAMILIES = (
             "cylinder_box",
             "cylinder_cylinder",
             "cylinder_plane",
+            "ellipsoid_plane",
             "hull_plane",
             "sphere_cylinder",
         ),

@@ -36,6 +36,7 @@ from lavendersim.cell.shapes import (
     CellSimple,
     Convex,
     Cylinder,
+    Ellipsoid,
     Plane,
     Sphere,
 )
@@ -68,6 +69,7 @@ __all__ = [
     "CellTriggeredEvent",
     "Convex",
     "Cylinder",
+    "Ellipsoid",
     "FrictionCone",
     "Impacts",
     "Integrator",

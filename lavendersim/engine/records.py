@@ -27,6 +27,7 @@ CAPSULE: Final = 3
 CYLINDER: Final = 4
 HULL: Final = 5
 COMPOUND: Final = 6
+ELLIPSOID: Final = 7
 ROPE_END: Final = -1  # where a rope or a joint is on a body: `collide.rope`, `collide.joint`
 
 # PAIR.kind of what no two shapes are: those of shapes are 0 and more, those of joints less than -2.

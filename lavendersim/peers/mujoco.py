@@ -99,7 +99,9 @@ PEER: Final = Peer(
         Knobs("mujoco-rk4"),
         Knobs("mujoco-discrete"),
     ),
-    shapes=frozenset({"plane", "sphere", "box", "capsule", "cylinder", "hull", "compound"}),
+    shapes=frozenset(
+        {"plane", "sphere", "box", "capsule", "cylinder", "ellipsoid", "hull", "compound"}
+    ),
     surface_keys=frozenset({"friction", "restitution"}),
     forces=True,
     reported=POINT + IMPULSE + TANGENTIAL + FRICTION,

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import rerun as rr
 
-from lavendersim.cell import Box, Capsule, CellHull, Convex, Cylinder, Sphere
+from lavendersim.cell import Box, Capsule, CellHull, Convex, Cylinder, Ellipsoid, Sphere
 from lavendersim.geometry.convex_hull import Polyhedron, convex_hull
 from lavendersim.geometry.rotations import rotated
 from lavendersim.geometry.shapes import Piece
@@ -58,6 +58,10 @@ def _draw(pieces: Sequence[Piece], look: BodyLook) -> list[Any]:
     if balls:
         radii = np.array([ball.radius for ball in balls])
         return [rr.Ellipsoids3D(radii=radii, centers=centres, quaternions=turns, **look.words)]
+    ellipsoids = [shape for shape in shapes if isinstance(shape, Ellipsoid)]
+    if ellipsoids:
+        axes = np.array([one.semi_axes for one in ellipsoids])
+        return [rr.Ellipsoids3D(half_sizes=axes, centers=centres, quaternions=turns, **look.words)]
     bars = [shape for shape in shapes if isinstance(shape, Capsule | Cylinder)]
     if not bars:
         return _polyhedra(pieces, [_polyhedron(shape) for shape in shapes], look)

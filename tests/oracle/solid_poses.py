@@ -164,6 +164,7 @@ def put(row: np.void, kind: str, half, centre=(0.0, 0.0, 0.0), matrix=None, **pr
             "sphere": half[0],
             "box": float(np.linalg.norm(half)),
             "capsule": half[0] + half[2],
+            "ellipsoid": max(half),
             "cylinder": float(np.hypot(half[0], half[2])),
         }[kind]
 

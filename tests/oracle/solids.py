@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-KINDS = ("plane", "sphere", "box", "capsule", "cylinder", "hull")
+KINDS = ("plane", "sphere", "box", "capsule", "cylinder", "hull", "compound", "ellipsoid")
 
 
 class Solid(NamedTuple):
@@ -56,9 +56,18 @@ def reach(solid: Solid, n: np.ndarray) -> float:
         return centre + float(np.abs(local) @ half)
     if solid.kind == "capsule":
         return centre + float(abs(local[2]) * half[2] + np.linalg.norm(n) * half[0])
+    if solid.kind == "ellipsoid":
+        return centre + float(np.linalg.norm(local * half))
     if solid.kind == "cylinder":
         return centre + float(abs(local[2]) * half[2] + np.hypot(local[0], local[1]) * half[0])
     return centre + float(np.max(solid.corners @ local))
+
+
+def grown(solid: Solid) -> float:
+    """Return the radius that a solid's core is grown by [m]."""
+    if solid.kind == "ellipsoid":  # half of its least radius of curvature
+        return 0.5 * float(solid.half.min() ** 2 / solid.half.max())
+    return float(solid.half[0]) if solid.kind in ("sphere", "capsule") else 0.0
 
 
 def separation_along(a: Solid, b: Solid, n: np.ndarray) -> float:
@@ -80,6 +89,8 @@ def off_surface(solid: Solid, point: np.ndarray) -> float:
     if solid.kind == "capsule":
         local[2] -= np.clip(local[2], -half[2], half[2])
         return float(np.linalg.norm(local) - half[0])
+    if solid.kind == "ellipsoid":
+        return off_ellipsoid(local, half)
     if solid.kind == "hull":
         heights = []
         for loop in solid.faces:
@@ -92,6 +103,29 @@ def off_surface(solid: Solid, point: np.ndarray) -> float:
     else:
         over = np.abs(local) - half
     return float(np.linalg.norm(np.maximum(over, 0.0)) + min(np.max(over), 0.0))
+
+
+def off_ellipsoid(point: np.ndarray, half: np.ndarray) -> float:
+    """Return the signed distance of a point to an ellipsoid about the origin [m].
+
+    The nearest point is (a_i^2 p_i / (t + a_i^2)), where F(t) = sum (a_i p_i / (t + a_i^2))^2 = 1:
+    F falls from infinity as t grows from minus the least a_i^2 (D. Eberly, Distance from a point to
+    an ellipse, an ellipse or a hyperellipsoid, 2013). The root by bisection.
+    """
+    squares, p = half**2, np.abs(point)
+    longest = float(half.max())
+    low, high = -(float(half.min()) ** 2), longest * float(np.linalg.norm(p)) + longest**2
+    for _ in range(200):
+        t = 0.5 * (low + high)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shares = half * p / (t + squares)
+        if np.nansum(shares**2) > 1.0:
+            low = t
+        else:
+            high = t
+    nearest = squares * p / (0.5 * (low + high) + squares)
+    side = 1.0 if float(np.sum((p / half) ** 2)) > 1.0 else -1.0
+    return side * float(np.linalg.norm(p - nearest))
 
 
 class Judge:
@@ -119,6 +153,8 @@ class Judge:
             return coal.Capsule(half[0], 2.0 * half[2])
         if solid.kind == "cylinder":
             return coal.Cylinder(half[0], 2.0 * half[2])
+        if solid.kind == "ellipsoid":
+            return coal.Ellipsoid(*half)
         points = coal.StdVec_Vec3s()
         points.extend(list(solid.corners))
         return coal.Convex.convexHull(points, False, "Qt")

@@ -24,7 +24,7 @@ from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.effects.joint_models import JOINTS
 from lavendersim.scene.laws import needs
 
-SOLIDS = ("sphere", "box", "capsule", "cylinder", "hull", "compound")
+SOLIDS = ("sphere", "box", "capsule", "cylinder", "hull", "compound", "ellipsoid")
 SOLVERS = (
     "adaptive",
     "projected_gauss_seidel",
@@ -189,6 +189,8 @@ class _Pen(Draw):
         if kind in ("capsule", "cylinder"):
             radius, length = 0.5 * size * self.share(0.02), size * self.share(0.02)
             return {"kind": kind, "radius": radius, "length": length}
+        if kind == "ellipsoid":
+            return {"kind": kind, "semi_axes": [size * self.share(0.02) for _ in range(3)]}
         if kind == "hull":
             points = [[size * (c + 0.1 * self.unit()) for c in point] for point in HULL]
             return {"kind": kind, "points": points}

@@ -15,6 +15,7 @@ from lavendersim.cell.shapes.capsule import Capsule
 from lavendersim.cell.shapes.compound import CellCompound, CellPart
 from lavendersim.cell.shapes.convex import PRIMITIVES, CellSimple
 from lavendersim.cell.shapes.cylinder import Cylinder
+from lavendersim.cell.shapes.ellipsoid import Ellipsoid
 from lavendersim.cell.shapes.hull import CellHull
 from lavendersim.cell.shapes.plane import Plane
 from lavendersim.cell.shapes.shape import Convex, Homogeneous, Primitive
@@ -39,6 +40,7 @@ __all__ = [
     "CellSimple",
     "Convex",
     "Cylinder",
+    "Ellipsoid",
     "Homogeneous",
     "Plane",
     "Primitive",

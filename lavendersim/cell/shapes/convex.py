@@ -9,6 +9,7 @@ from pydantic import Field
 from lavendersim.cell.shapes.box import Box
 from lavendersim.cell.shapes.capsule import Capsule
 from lavendersim.cell.shapes.cylinder import Cylinder
+from lavendersim.cell.shapes.ellipsoid import Ellipsoid
 from lavendersim.cell.shapes.hull import CellHull
 from lavendersim.cell.shapes.shape import Convex, Primitive
 from lavendersim.cell.shapes.sphere import Sphere
@@ -19,6 +20,7 @@ PRIMITIVES: Final[tuple[type[Primitive], ...]] = (
     Box,
     Capsule,
     Cylinder,
+    Ellipsoid,
 )
 
 if TYPE_CHECKING:

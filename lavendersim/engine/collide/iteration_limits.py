@@ -15,6 +15,9 @@ from ..step_terms import step_terms
 from .pairs import SHAPE_PAIRS
 from .shapes import has_curved
 
+# Files of `pairs` whose kernels look for a depth by EPA.
+BY_EPA = ("convex", "ellipsoid_convex")
+
 
 def needs_separation(spec: Spec) -> bool:
     """Whether a pair has a gap that its points do not hold."""
@@ -24,7 +27,7 @@ def needs_separation(spec: Spec) -> bool:
 
 def has_epa(spec: Spec) -> bool:
     """Whether depths of convex bodies are looked for by EPA, from where GJK ends."""
-    return any(SHAPE_PAIRS[name].file == "convex" for name in spec.shape_pairs)
+    return any(SHAPE_PAIRS[name].file in BY_EPA for name in spec.shape_pairs)
 
 
 def has_gjk(spec: Spec) -> bool:

@@ -1,9 +1,10 @@
 """What collision detection knows of a shape: its number in BODY.shape, and where its kernels are.
 
-A shape is its core, grown by a radius: a sphere is a point, a capsule a segment, grown by theirs;
-boxes, cylinders and hulls are their own cores. A new convex shape is one file in `shapes` and a
-`Shape` in `shapes.DECLARED`: it collides with every other by GJK and EPA, where no file of `pairs`
-has a closed form. What it is to a config and to views: `cell/shapes`.
+A shape is its core, grown by a radius: a sphere is a point, a capsule a segment, grown by theirs,
+an ellipsoid a smooth body, grown by part of its least radius of curvature; boxes, cylinders and
+hulls are their own cores. A new convex shape is one file in `shapes` and a `Shape` in
+`shapes.DECLARED`: it collides with every other by GJK and EPA, where no file of `pairs` has a
+closed form. What it is to a config and to views: `cell/shapes`.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ MAKERS: Final = (
     # kernel(body, direction, hulls) -> the point of the core farthest along it, from the centre,
     # along the world's axes; without a file the core is the centre
     "make_support",
+    # kernel(body) -> radius of the ball that a rounded core is grown by [m]; none: BODY.hx
+    "make_radius",
     # kernel(body) -> half edges of its axis-aligned box in the world [m]; none: of its bounding
     # sphere
     "make_half_extents",
@@ -42,7 +45,7 @@ class Shape(NamedTuple):
     name: str
     kind: int = -1  # of BODY.shape; without one of its own, its place in the list
     kernels: bool = False  # whether the file of its name has any; else its core is its centre
-    rounded: bool = False  # whether the core is grown by the radius BODY.hx
+    rounded: bool = False  # whether the core is grown by a radius, `make_radius`
     curved: bool = False  # whether the core itself has a curved side
     polyhedral: bool = False  # whether its faces are polygons
     oriented: bool = True  # whether its body needs ORIENTED_BODY

@@ -65,7 +65,7 @@ def bounding_extents(body):
 
 @inner
 def own_radius(body):
-    """Return the radius of a rounded shape [m]."""
+    """Return the radius of a rounded shape that has no other [m]."""
     return body.hx
 
 
@@ -123,7 +123,12 @@ def make_edge(spec: Spec) -> Any:
 @once
 def make_radius(spec: Spec) -> Any:
     """Return `kernel(body) -> radius of the ball that the core is grown by` [m]."""
-    return by_flag(spec, lambda shape: shape.rounded, own_radius, no_radius)
+
+    def maker_of(shape: Shape) -> Maker | None:
+        own = shape.maker("make_radius")
+        return own if own is not None or not shape.rounded else lambda _: own_radius
+
+    return by_shape(spec, maker_of, no_radius)
 
 
 @once

@@ -40,7 +40,7 @@ TORQUES = {  # by the term of rows: the same of psi, and the limits of a round [
     ],
 }
 # Shapes that touch each other, or a plane, in one point.
-ONE_POINT = {"sphere", "plane"}
+ONE_POINT = {"sphere", "plane", "ellipsoid"}
 
 
 def decide(facts: Facts) -> Decision:

@@ -106,7 +106,9 @@ class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: i
 class Body(_Matter):
     """One rigid body. Planes are static; a movable body has exactly one of mass and density."""
 
-    shape: Shape = Field(description="plane, sphere, box, capsule, cylinder, hull or compound")
+    shape: Shape = Field(
+        description="plane, sphere, box, capsule, cylinder, ellipsoid, hull or compound"
+    )
     position: Position | None = Field(
         default=None,
         description="[m] centre of mass, world frame; of planes neither this nor a release",

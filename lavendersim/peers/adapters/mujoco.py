@@ -53,6 +53,8 @@ class World:
             corners = _text(number for point in shape.points for number in point)
             meshes.append(f'<mesh name="{name}" vertex="{corners}" inertia="convex"/>')
             form = f'type="mesh" mesh="{name}"'
+        elif shape.kind == "ellipsoid":
+            form = f'type="ellipsoid" size="{_text(shape.semi_axes)}"'
         else:
             edges = shape.size if shape.kind == "box" else (2.0 * shape.radius,)
             edges += (shape.length,) if shape.kind in ("capsule", "cylinder") else ()

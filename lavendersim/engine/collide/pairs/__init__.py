@@ -21,6 +21,11 @@ def by_gjk(a: str, b: str) -> ShapePair:
     return ShapePair(f"{b}_{a}", (a, b), "convex")
 
 
+def smooth(a: str) -> ShapePair:
+    """Return the pair of a shape with an ellipsoid: Newton's method behind GJK and EPA."""
+    return ShapePair(f"ellipsoid_{a}", (a, "ellipsoid"), "ellipsoid_convex")
+
+
 DECLARED = (
     own("plane", "sphere"),
     own("plane", "box"),
@@ -42,6 +47,13 @@ DECLARED = (
     by_gjk("hull", "capsule"),
     by_gjk("hull", "cylinder"),
     by_gjk("hull", "hull"),
+    own("plane", "ellipsoid"),
+    smooth("sphere"),
+    smooth("box"),
+    smooth("capsule"),
+    smooth("cylinder"),
+    smooth("hull"),
+    smooth("ellipsoid"),
 )
 
 

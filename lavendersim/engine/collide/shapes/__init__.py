@@ -5,7 +5,17 @@ Shapes are declared here, which loads no kernel: plans are made without numba.
 
 from __future__ import annotations
 
-from ...records import BOX, CAPSULE, COMPOUND, CYLINDER, HULL, HULL_BODY, PLANE, SPHERE
+from ...records import (
+    BOX,
+    CAPSULE,
+    COMPOUND,
+    CYLINDER,
+    ELLIPSOID,
+    HULL,
+    HULL_BODY,
+    PLANE,
+    SPHERE,
+)
 from ...spec import Spec
 from ..shape import Shape
 
@@ -17,6 +27,7 @@ DECLARED = (
     Shape("cylinder", CYLINDER, kernels=True, curved=True),
     Shape("hull", HULL, kernels=True, polyhedral=True, fields=tuple(HULL_BODY)),
     Shape("compound", COMPOUND),  # its parts collide, each as a shape of its own
+    Shape("ellipsoid", ELLIPSOID, kernels=True, rounded=True, curved=True),
 )
 SHAPES = {
     shape.name: shape if shape.kind >= 0 else shape._replace(kind=place)

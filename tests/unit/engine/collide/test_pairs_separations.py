@@ -127,8 +127,10 @@ def test_coal_finds_the_same_distance_and_no_lesser_depth(seen):
             assert phi >= best - kept - share - (SNAP + STALL) * size - CUT
     assert apart > 60
     assert overlapping > 60
-    # coal's EPA gives up on some deep cylinders.
-    assert silent <= (0.1 * POSES if round_cores else 0)
+    # coal's EPA gives up on some deep cylinders, and on one in eight of two deep ellipsoids.
+    # `pairs/test_ellipsoid_convex.py` judges those by proofs and by scipy.
+    gives_up = 0.1 * round_cores + 0.15 * ("ellipsoid" in seen[0].pair)
+    assert silent <= min(gives_up, 0.15) * POSES
 
 
 def test_the_swept_distance_is_the_manifolds_and_never_more(seen):
@@ -138,11 +140,7 @@ def test_the_swept_distance_is_the_manifolds_and_never_more(seen):
     for i, _, _, size, manifold in looked_at(seen):
         distance, normal = found[i, 0], found[i, 1:]
         phi = manifold.phi.min()
-        grown = sum(
-            float(row["hx"])
-            for row in (sample.first[i], sample.second[i])
-            if solids.KINDS[row["shape"]] in ("sphere", "capsule")
-        )
+        grown = sum(map(solids.grown, sample.solids(i)))
         if planes or phi > -grown + 1e-9 * size:
             kept = slack(sample, i, phi)
             assert distance == pytest.approx(phi, abs=(SNAP + STALL) * size + CUT + kept)
