@@ -17,7 +17,7 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.figures.series import band_along
-from lavendersim.figures.specs.base import Ideal
+from lavendersim.figures.specs.ideal import Ideal
 from lavendersim.measures.cell_judgements import evaluated
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.interfaces import Cell, Floats

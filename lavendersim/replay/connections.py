@@ -8,14 +8,13 @@ A connection vanishes with the first of its bodies that is removed.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import rerun as rr
 
 from lavendersim.cell import CellBody, CellScene, Plane
-from lavendersim.engine.effects.joint_models import Joint
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.rotations import rotation_matrices, rotation_matrix
 from lavendersim.replay.blocks import blocks, send_columns
@@ -60,7 +59,7 @@ def lines_of(scene: CellScene) -> list[DrawnLine]:
     """Return a line for each rope, spring and joint, in the order of the config."""
     lines = []
     for name, one in scene.connections.items():
-        if isinstance(one, Joint):
+        if one.kind != "rope":  # a joint
             lines.append(DrawnLine(("joints", name), _arms(one, scene.bodies)))
             continue
         ends = [
@@ -76,7 +75,7 @@ def lines_of(scene: CellScene) -> list[DrawnLine]:
     return lines
 
 
-def _arms(joint: Joint, bodies: dict[str, CellBody]) -> tuple[Corner, ...]:
+def _arms(joint: Any, bodies: dict[str, CellBody]) -> tuple[Corner, ...]:
     """Return the centre of A, the joint in the frame of A, and the centre of B; of what moves."""
     a, b = joint.between
     body = bodies[a]

@@ -16,8 +16,9 @@ from config_tables import keys_table
 from markdown_tables import markdown
 from sources import ROOT
 
-from lavendersim.figures.specs.base import Ideal, Level, Panel
+from lavendersim.figures.specs.base import Level, Panel
 from lavendersim.figures.specs.catalogue import KINDS
+from lavendersim.figures.specs.ideal import Ideal
 
 PICTURES: Final = ROOT / "docs/images/panels"
 # The shipped config whose figure shows a kind, and which of its panels of that kind.

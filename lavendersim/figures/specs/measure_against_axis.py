@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lavendersim.figures.specs.base import Ideal, Number, Panel
+from lavendersim.figures.specs.base import Number, Panel
+from lavendersim.figures.specs.ideal import Ideal
 from lavendersim.measures.specs.expectation import Aggregate
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.names import AxisName, MeasureName

@@ -7,7 +7,8 @@ from typing import Annotated, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
-from lavendersim.figures.specs.base import Ideal, Number, Panel
+from lavendersim.figures.specs.base import Number, Panel
+from lavendersim.figures.specs.ideal import Ideal
 from lavendersim.quantities.names import BodyName, PlaneName
 from lavendersim.quantities.quantity import Quantity, sentence_error
 from lavendersim.quantities.readings import CONTACTS, POSES, SUMS, VELOCITIES, Readings

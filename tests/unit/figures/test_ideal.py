@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 from synthetic import SyntheticCell, ball_and_floor, trace_of
 
 from lavendersim.figures.ideal import POINTS, ideal_line
-from lavendersim.figures.specs.base import Ideal
+from lavendersim.figures.specs.ideal import Ideal
 from lavendersim.measures.specs.base import ClosedForm
 
 WEIGHT = Ideal(closed_form=ClosedForm(form="weight", bodies=("ball",)), label="weight")
@@ -97,8 +96,3 @@ def test_an_ideal_is_a_number_in_every_cell_as_well() -> None:
     )
     assert set(values.tolist()) == {0.25}
     assert places[[0, -1]].tolist() == [1.0, 4.0]
-
-
-def test_an_ideal_is_a_form_or_a_value() -> None:
-    with pytest.raises(ValidationError, match="exactly one of value, closed_form"):
-        Ideal(label="a")
