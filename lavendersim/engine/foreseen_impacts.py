@@ -27,7 +27,7 @@ from .approach import (
 from .compile import kernel
 from .effects import made_once
 from .records import TOUCHING
-from .row_terms import row_terms
+from .row_terms import make_is_soft, row_terms
 from .spec import Spec
 from .step_terms import step_terms
 
@@ -77,7 +77,8 @@ def make_foresee(spec: Spec) -> Any:
     relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
     turns, gap_acceleration = step_terms(spec).turns, make_gap_acceleration(spec)
     restitution, compliance = step_terms(spec).rebounds, row_terms(spec).compliant
-    springs, curved = row_terms(spec).elastic, row_terms(spec).curved
+    springs = row_terms(spec).elastic
+    is_soft: Any = make_is_soft(spec) if springs else None
     draws, is_drawn = made_once(spec, "is_drawn")
     overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
     acceleration_of_rope: Any = make_gap_acceleration_of_rope(spec) if ropes else None
@@ -88,10 +89,10 @@ def make_foresee(spec: Spec) -> Any:
         soft = False  # its impulse takes time: none at an instant
         if compliance:
             soft = pair.compliance > 0.0
-        if curved:
-            if pair.hertz_stiffness > 0.0:  # its law reckons with what is left of a gap
+        if springs:
+            if is_soft(pair):  # its law reckons with what is left of a gap
                 return False
-        if soft and not springs:
+        elif soft:
             return False
         v = contact.rate
         if contact.phi <= TOUCHING and abs(v) <= CREEP:

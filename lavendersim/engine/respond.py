@@ -16,7 +16,7 @@ from . import ordering
 from .compile import chain, kernel, separate
 from .contact import make_append_contact, make_apply_start
 from .effects import has_hook, made_by, made_once
-from .hertz_law import make_solve_by_tangents
+from .contact_spring_law import make_solve_by_tangents
 from .integrate import keeps_motion, make_classify
 from .joint_turn import make_joint_velocity
 from .midpoint_passes import make_midpoint_passes, make_stand_up
@@ -33,7 +33,7 @@ from .step_terms import step_terms
 def make_solve(spec: Spec) -> Any:
     """Return the solver's kernel, with impulses chosen where the laws leave them open."""
     linear = _make_solve_and_choose(spec)
-    return make_solve_by_tangents(spec, linear) if row_terms(spec).curved else linear
+    return make_solve_by_tangents(spec, linear) if row_terms(spec).elastic else linear
 
 
 def _make_solve_and_choose(spec: Spec) -> Any:

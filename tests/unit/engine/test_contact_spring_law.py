@@ -9,10 +9,10 @@ import pytest
 from interpreted import interpreted, records
 from plain_facts import one_row
 
-from lavendersim.engine.hertz_law import (
+from lavendersim.engine.contact_spring_law import (
     FLATTEST,
     make_linearise,
-    make_push,
+    make_hertz_push,
     make_solve_by_tangents,
     make_stored,
     make_touch,
@@ -83,7 +83,7 @@ def test_its_slope_is_that_of_differences(begin: float, end: float) -> None:
 @pytest.mark.parametrize("a", [0.0, A, 10.0])
 def test_its_impulse_falls_and_is_convex(spec: Spec, a: float) -> None:
     """So that tangents lie below it and Newton's method finds it from anywhere."""
-    push, params = interpreted(make_push(spec)), one_row(dt=DT)
+    push, params = interpreted(make_hertz_push(spec)), one_row(dt=DT)
     for _ in range(40):
         contact = row(DRAWN.uniform(-0.002, 0.004), DRAWN.uniform(-2.0, 2.0), a)
         at, other = DRAWN.uniform(-3.0, 3.0, 2)
@@ -95,7 +95,7 @@ def test_its_impulse_falls_and_is_convex(spec: Spec, a: float) -> None:
 
 @SPECS
 def test_its_impulse_is_that_of_the_rule(spec: Spec) -> None:
-    push, contact = interpreted(make_push(spec)), row()
+    push, contact = interpreted(make_hertz_push(spec)), row()
     for v in (-0.3, 0.1, 0.5):
         rate = -0.5 * (v - 0.4) if spec is MEAN else -v
         end = 0.003 + DT * rate
@@ -107,14 +107,14 @@ def test_its_impulse_is_that_of_the_rule(spec: Spec) -> None:
 
 @SPECS
 def test_nothing_pulls_however_fast_it_leaves(spec: Spec) -> None:
-    assert interpreted(make_push(spec))(row(v=4.0), 4.0, one_row(dt=DT))[0] == 0.0
+    assert interpreted(make_hertz_push(spec))(row(v=4.0), 4.0, one_row(dt=DT))[0] == 0.0
 
 
 @SPECS
 def test_its_row_is_the_tangent(spec: Spec) -> None:
     """v + target + gamma lambda = 0 at the law's impulse, with its slope."""
     push, touch, params = (
-        interpreted(make_push(spec)),
+        interpreted(make_hertz_push(spec)),
         interpreted(make_touch(spec)),
         one_row(dt=DT),
     )
@@ -161,7 +161,7 @@ def test_solves_with_new_tangents_find_the_law(spec: Spec, stiffness: float, v: 
     counters = one_row(sweeps=0, not_converged=0)
     interpreted(make_solve_by_tangents(spec, linear_solve))(system, None, params, counters, None)
     row, v = records(contacts)[0], velocities["vz"][1]
-    impulse, slope = interpreted(make_push(spec))(row, v, one_row(dt=DT))
+    impulse, slope = interpreted(make_hertz_push(spec))(row, v, one_row(dt=DT))
     assert counters.not_converged == 0
     # Far too deep, F of d^(3/2) has a tangent through d/3: 6 mm to 10 nm are 12, then it squares.
     assert 1 <= counters.sweeps <= 18
