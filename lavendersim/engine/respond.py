@@ -248,6 +248,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
 def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
     """Return `kernel(contacts, velocities, motion, params, counters, log)`: for no contact."""
     logs, keeps = has_hook(spec, "log_contacts"), keeps_motion(spec)
+    stores, contact_energy = made_once(spec, "contact_energy")
     classify: Any = make_classify(spec) if keeps else None
 
     def pass_by(contacts, velocities, motion, params, counters, log):
@@ -255,6 +256,8 @@ def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
         counters.residual, counters.residual_contact = 0.0, -1
         counters.not_converged, counters.stronge, counters.sharpen = 0, 0, 0
         counters.cached, counters.contact_energy = 0, 0.0
+        if stores:
+            counters.contact_energy = contact_energy(contacts, 0, velocities, params)
         if logs:
             log_contacts(contacts, 0, velocities, params, counters, log)
         if keeps:

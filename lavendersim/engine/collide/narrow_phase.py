@@ -22,8 +22,9 @@ from .records import put_normal
 from .rope import make_rope
 from .swept import make_is_fast, make_swept_manifold
 
-# Springs that begin to push within a step may hit a body that does not move yet, which then
-# meets others: contacts by `contact_spring_law` are looked for so many reaches of the fastest ahead [-].
+# Springs may give in a step what they store, or hit a body that does not move yet, which then
+# meets others: contacts by `contact_spring_law` are looked for so many reaches of the fastest
+# ahead, what springs may give it included [-].
 REACHES = 4.0
 
 
@@ -127,7 +128,7 @@ def make(spec: Spec):
         widest = 0.0
         if springs:
             for i in range(motion.shape[0]):
-                widest = max(widest, motion[i].reach)
+                widest = max(widest, motion[i].reach + dt * state.velocities[i].released)
             widest = TOUCHING + REACHES * widest
         for p in range(listed):
             i, j = pairs[p].a, pairs[p].b

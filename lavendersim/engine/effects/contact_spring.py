@@ -11,11 +11,17 @@ move by v_1 alone by the implicit Euler rule, of order 1. A contact with a sprin
 its restitution has no effect, and it is not projected.
 """
 
+from math import sqrt
+
 from ..step_terms import step_terms
 from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Balance, Choice, Column, Effect, Fields, Hooks, kernel
 from .keys import COEFFICIENT, SurfaceKey, larger
+
+
+# Force of a spring, in the energy it stores by its depth: 2 of the linear law, 5/2 of Hertz's [-].
+STEEPEST = 2.5
 
 
 def _described(pair: PairFacts[str]) -> str:
@@ -71,7 +77,10 @@ def make(spec):
 
 
 def make_energy(spec):
-    """Return `kernel(contacts, count, velocities, params) -> energy` after the solve [J]."""
+    """Return `kernel(contacts, count, velocities, params) -> energy` after the solve [J].
+
+    Velocities note what springs may give of it in the next step, by energy and by force.
+    """
     from ..contact import make_normal_velocity
     from ..contact_spring_law import make_stored
 
@@ -80,13 +89,22 @@ def make_energy(spec):
 
     def spring_energy(contacts, count, velocities, params):
         total = 0.0
+        for i in range(velocities.shape[0]):
+            velocities[i].released = 0.0
         for c in range(count):
             contact = contacts[c]
             if contact.spring_compliance > 0.0:
                 v = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
                 if mean:
                     v = 0.5 * (v + contact.spring_v)
-                total += stored(contact, -(contact.phi + params.dt * v))
+                depth = -(contact.phi + params.dt * v)
+                energy = stored(contact, depth)
+                total += energy
+                if energy > 0.0:
+                    speed = sqrt(2.0 * energy * contact.k_n)
+                    speed = min(speed, STEEPEST * energy / depth * contact.k_n * params.timestep)
+                    a, b = velocities[contact.a], velocities[contact.b]
+                    a.released, b.released = max(a.released, speed), max(b.released, speed)
         return total
 
     return kernel(spring_energy, spec)
@@ -129,6 +147,7 @@ EFFECT = Effect(
     row=RowTerms(elastic=True),
     fields=Fields(
         pair=[("damping_ratio", "f8")],  # zeta of the pair [-]
+        velocity=[("released", "f8")],  # speed that a spring may give in a step [m/s]
         contact=[
             ("spring_compliance", "f8"),  # c; 0: a rigid contact [m/N]
             ("damping_ratio", "f8"),  # zeta [-]
