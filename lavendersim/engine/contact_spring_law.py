@@ -1,4 +1,4 @@
-"""Laws of contact springs: impulse of a step, its tangent row, solves with new tangents, the energy.
+"""Laws of contact springs: impulse of a step, its tangent row, solves with new tangents; energy.
 
     F = (d + c k_d d')/c,      0 <= F,   U = d^2/(2 c)              linear, k_d = 2 zeta sqrt(m/c)
     F = k d^(3/2) (1 + a d'),  0 <= F,   U = 2/5 k d^(5/2)          Hertz, Hunt and Crossley

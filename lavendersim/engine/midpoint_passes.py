@@ -12,8 +12,8 @@ from typing import Any
 
 from .compile import either, greatest, kernel
 from .contact import make_apply_start
-from .effects import has_hook, made_by, made_once
 from .contact_spring_law import make_linearise
+from .effects import has_hook, made_by, made_once
 from .midpoint_geometry import (
     make_keep_start,
     make_look,

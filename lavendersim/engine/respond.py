@@ -15,8 +15,8 @@ from typing import Any
 from . import ordering
 from .compile import chain, kernel, separate
 from .contact import make_append_contact, make_apply_start
-from .effects import has_hook, made_by, made_once
 from .contact_spring_law import make_solve_by_tangents
+from .effects import has_hook, made_by, made_once
 from .integrate import keeps_motion, make_classify
 from .joint_turn import make_joint_velocity
 from .midpoint_passes import make_midpoint_passes, make_stand_up

@@ -11,8 +11,8 @@ from typing import Any
 
 from .compile import kernel
 from .contact import make_normal_velocity
-from .effects import has_hook
 from .contact_spring_law import make_stored
+from .effects import has_hook
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms

@@ -19,7 +19,6 @@ from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Balance, Choice, Column, Effect, Fields, Hooks, kernel
 from .keys import COEFFICIENT, SurfaceKey, larger
 
-
 # Force of a spring, in the energy it stores by its depth: 2 of the linear law, 5/2 of Hertz's [-].
 STEEPEST = 2.5
 

@@ -1,4 +1,4 @@
-"""A step's impulse by a spring's law: the mean of its force over the way, its tangent, its energy."""
+"""A step's impulse by a spring's law: the mean of its force over the way, tangent and energy."""
 
 from __future__ import annotations
 

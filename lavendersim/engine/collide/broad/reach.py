@@ -5,8 +5,9 @@
 The narrow phase must not make speculative contacts beyond the sum of two reaches and TOUCHING.
 Where it makes some, forces have acted on v and omega before pairs are looked for, and the first two
 terms are its own bound (`integrate.make_begin`); what gravity adds in two steps is a margin, which
-what nothing can push has not. What springs of contacts may give a body counts as its speed. Without speculative contacts only what touches when the step begins
-matters, and velocities may be those before forces.
+what nothing can push has not. What springs of contacts may give a body counts as its speed.
+Without speculative contacts only what touches when the step begins matters, and velocities may be
+those before forces.
 """
 
 from __future__ import annotations
