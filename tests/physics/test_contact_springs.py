@@ -211,7 +211,7 @@ def test_no_column_that_steps_do_not_resolve_wins_energy(
     states = ran[f"stiff {c} {ratio}"]
     energy = total_energy(states)
     # A row misses its law by a thousandth of SOLVED as a velocity, an impulse of dt^2/(4 c) times
-    # that; or the round-off of its speed, 1e-14. Both work along the way of a step.
+    # that; or the round-off of its speed, 1e-14. Both work along the displacement of a step.
     stiff = 1.0 / (4.0 * c * 240.0**2)
     missed = max(1e-3 * SOLVED, 1e-14 * FASTEST)
     bound = 240 * COLUMN * (stiff + COLUMN) * missed * FASTEST
