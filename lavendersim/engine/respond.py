@@ -28,6 +28,7 @@ from .solvers.catalogue import SOLVERS
 from .solvers.solver import ContactSystem
 from .spec import Spec
 from .step_terms import step_terms
+from .stiff_springs import may_rebound
 
 
 def make_solve(spec: Spec) -> Any:
@@ -81,7 +82,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     preload: Any = chain(loads, spec) if loaded else None
 
     ordered, centred = step_terms(spec).ordered_impacts, step_terms(spec).centred
-    rebounds = ordered and step_terms(spec).rebounds
+    rebounds = ordered and may_rebound(spec)
     lasting: Any = make_lasting(spec) if centred else None
     is_moving: Any = make_is_moving(spec) if centred else None
     bilateral = row_terms(spec).bilateral

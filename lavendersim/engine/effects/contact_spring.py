@@ -13,6 +13,7 @@ its restitution has no effect, and it is not projected.
 
 from math import sqrt
 
+from ..records import INSTANT
 from ..step_terms import step_terms
 from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
@@ -57,16 +58,28 @@ def make_row(spec):
 def make(spec):
     """Return `kernel(contact, pair, params)`."""
     from ..row_terms import row_terms
+    from ..stiff_springs import has_impacts, rebound
+    from . import has_hook
 
     spring_row, curved = make_row(spec), row_terms(spec).curved
-    mean = step_terms(spec).centred
+    mean, impacts = step_terms(spec).centred, has_impacts(spec)
+    falls = has_hook(spec, "restitution_at")
 
     def spring(contact, pair, params):
         contact.spring_compliance = pair.compliance
         contact.damping_ratio = pair.damping_ratio
         if curved:
             contact.hertz_stiffness = 0.0
-        if pair.compliance > 0.0:
+        instant = False
+        if impacts:
+            instant = params.dt <= INSTANT
+        if instant:  # an impact: nothing is pressed in
+            contact.spring_compliance, contact.gamma = 0.0, 0.0
+            if pair.compliance > 0.0:
+                contact.e = rebound(pair.damping_ratio)
+                if falls:
+                    contact.yield_speed = 0.0
+        elif pair.compliance > 0.0:
             v = contact.v_n_pre
             if mean:
                 v -= contact.dv_n
