@@ -146,7 +146,7 @@ def make_push(spec: Spec) -> Any:
 def make_touch(spec: Spec) -> Any:
     """Return `kernel(contact, v, params) -> missed`: its row is the tangent where v_n ends at v.
 
-    missed: what its impulse is off the law, as a change of velocity [m/s].
+    missed: what its impulse, or that of its row so far, is off the law, as a velocity [m/s].
     """
     push, curved = make_push(spec), row_terms(spec).curved
 
@@ -156,12 +156,17 @@ def make_touch(spec: Spec) -> Any:
         linear = True
         if curved:
             linear = contact.hertz_stiffness == 0.0
-        if linear:  # what is softer is so wherever it is pressed
+        found = contact.lambda_n
+        if linear:
+            # What solves leave is theirs: the law is missed where it leaves its last tangent.
+            if contact.gamma > 0.0:
+                found = max(-(v + contact.target) / contact.gamma, 0.0)
+            # What is softer is so wherever it is pressed.
             flattest = min(flattest, 0.25 * params.dt * params.dt / contact.spring_compliance)
         contact.gamma = 1.0 / max(slope, flattest)
         contact.target = -v - contact.gamma * impulse
         contact.inv_k = 1.0 / (contact.k_n + contact.gamma)
-        return contact.k_n * contact.gamma * contact.inv_k * abs(contact.lambda_n - impulse)
+        return contact.k_n * contact.gamma * contact.inv_k * abs(found - impulse)
 
     return kernel(touch, spec)
 

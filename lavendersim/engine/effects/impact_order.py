@@ -242,6 +242,10 @@ def make_order(spec: Spec) -> Any:
                 break
             due = locate(state, count, contact, workspace, params)
             contact.located, contact.due = LOCATED, due
+        if springs:
+            for c in range(count):
+                if is_soft(state.pairs[contacts[c].pair]):
+                    contacts[c].waits = 0  # its law reckons with gaps, whatever closes them
         count = keep_motion(contacts, count, workspace.overlooked)
         return count, until_stop(state, count, length, params, counters)
 
