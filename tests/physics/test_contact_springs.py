@@ -24,6 +24,14 @@ GRAVITY_OF = f"[0, 0, {-GRAVITY}]"
 STIFF, DAMPED = (1e-6, 1e-8, 1e-10), (0.0, 0.2, 1.0)
 COLUMN, FASTEST = 6, 4.0  # balls of 1 to 6 kg; what falls 0.05 m onto 21 kg is slower [m/s]
 FALL, RADIUS = 0.05, 0.1
+DROPS = (0.1, 0.113, 0.121)  # met early and late in a step [m]
+SHORT = 1e-6  # of 1 kg at 240 Hz: dt^2/(m c) = 17, unresolved [m/N]
+GIVEN_BACK = {  # exp(-2 a cot a), a = acos zeta
+    0.0: 1.0,
+    0.2: math.exp(-0.4 * math.acos(0.2) / math.sqrt(1.0 - 0.04)),
+    1.0: math.exp(-2.0),
+    2.0: math.exp(-4.0 * math.acosh(2.0) / math.sqrt(3.0)),
+}
 FLOOR = "{shape: {kind: plane}}"  # rigid
 
 
@@ -64,6 +72,13 @@ def scenes() -> dict[str, str]:
         for ratio in DAMPED:
             surface = f"compliance: {c}, damping_ratio: {ratio}"
             found[f"stiff {c} {ratio}"] = config(stiff, 240, 1.0, surface, GRAVITY_OF)
+    for ratio in GIVEN_BACK:
+        surface = f"compliance: {SHORT}, damping_ratio: {ratio}"
+        for drop in DROPS:
+            falls = {"floor": FLOOR, "ball": ball(RADIUS, 1.0, (0, 0, RADIUS + drop))}
+            found[f"drop {drop} {ratio}"] = config(falls, 240, 0.5, surface, GRAVITY_OF)
+    unlike = "compliance: 1e-8, damping_ratio: 0.4"
+    found["stack"] = config(stiff, 240, 10.0, unlike, GRAVITY_OF)
     found["bounce, restitution"] = spring(above, 240, 1.0, ", restitution: 0.5")
     return found
 
@@ -219,6 +234,34 @@ def test_no_column_that_steps_do_not_resolve_wins_energy(
     assert states.step["not_converged"].sum() == 0
     if ratio == 0.0:
         assert np.abs(energy - energy[0]).max() < bound
+
+
+@pytest.mark.parametrize("drop", DROPS)
+@pytest.mark.parametrize("ratio", GIVEN_BACK)
+def test_bounce_that_steps_do_not_resolve_is_that_of_its_damping(
+    ran: dict[str, States], drop: float, ratio: float
+) -> None:
+    """Whatever the phase of the step: back at e v, e of a spring and a damper that never pull."""
+    states = ran[f"drop {drop} {ratio}"]
+    speed = math.sqrt(2.0 * GRAVITY * drop)
+    met = speed / GRAVITY
+    for step in np.flatnonzero(states.time > met)[:3]:
+        flown = states.time[step] - met
+        if flown < 2.0 * GIVEN_BACK[ratio] * speed / GRAVITY:
+            risen = GIVEN_BACK[ratio] * speed * flown - 0.5 * GRAVITY * flown**2
+            # An impact is located to 1e-9 s or better: of the speed that is less than 1e-8 m.
+            assert heights(states)[step] == pytest.approx(RADIUS + risen, abs=1e-8)
+
+
+def test_stack_of_stiff_springs_rests_at_load_times_compliance(ran: dict[str, States]) -> None:
+    """Balls of 1 to 6 kg, each on two springs in series but for the lowest, on one."""
+    states, depth = ran["stack"], 0.0
+    for i in range(COLUMN):
+        load = GRAVITY * sum(1.0 + j for j in range(i, COLUMN))
+        depth += (1.0 if i == 0 else 2.0) * 1e-8 * load
+        height = heights(states, f"ball{i}")[-1]
+        assert height == pytest.approx(RADIUS * (1 + 2 * i) - depth, abs=SOLVED)
+    assert states.step["kinetic_energy"][-1] < COLUMN * 6.0 * (10.0 * SOLVED) ** 2
 
 
 def test_spring_has_no_impact(ran: dict[str, States]) -> None:
