@@ -7,8 +7,12 @@ d is the penetration: c N at rest, and a period of 2 pi sqrt(m c). A step solves
 rule inside,
     lambda = dt (d_0 + d_1)/(2 c) + k_d (d_1 - d_0),   d_1 = d_0 - dt (v_0 + v_1)/2
 and keeps the energy where surfaces meet and leave within the step, too; of order 2. Of bodies that
-move by v_1 alone by the implicit Euler rule, of order 1. A contact with a spring has no impact, so
-its restitution has no effect, and it is not projected.
+move by v_1 alone by the implicit Euler rule, of order 1. The restitution of surfaces with a spring
+has no effect, and they are not projected.
+
+Where impacts are in order and no accuracy is asked for, what meets on a spring that steps do not
+resolve, dt^2 (1/m_A + 1/m_B) > 4 c, has an impact, which gives back what the spring and its damper
+would (`stiff_springs`): exp(-2 a cot a) of the speed, cos a = zeta; no damper pulls.
 """
 
 from math import sqrt
