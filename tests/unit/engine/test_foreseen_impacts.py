@@ -300,28 +300,6 @@ def test_springs_push_across_a_gap_and_without_an_impact() -> None:
     assert Row(SPRUNG).moves(0.0, -1.0, 0.0).foresee()[0]
 
 
-def stiff(phi: float, v: float, a: float = 0.0, ratio: float = 1.0) -> tuple[bool, bool, float]:
-    """Foresee of a ball of 1 kg on a spring of dt^2/(m c) = 100."""
-    row = Row(SPRUNG, compliance=0.01 * STEP**2, damping_ratio=ratio).moves(phi, v, a)
-    row.bodies["inv_m"][1] = 1.0
-    return row.foresee()
-
-
-def test_springs_that_steps_do_not_resolve_have_impacts() -> None:
-    assert stiff(0.0, -1.0) == (True, False, NEVER)
-    assert stiff(1e-3, -1.0) == (False, True, pytest.approx(1e-3, rel=1e-12))
-    assert stiff(0.0, 1.0)[0] is False
-
-
-def test_what_presses_such_a_spring_has_one_as_it_is_faster_than_its_load_makes_it() -> None:
-    """Forces change 10 m/s^2 in a step; of what is undamped the spring gives all back."""
-    load, depth = 10.0 * STEP, -1e-5
-    for share, expected in ((1.0 + HAIR, True), (1.0 - HAIR, False)):
-        assert stiff(depth, -share * load, -10.0) == (expected, False, NEVER)
-    assert stiff(depth, -2.0 * load, -10.0, 0.0) == (False, False, NEVER)
-    assert stiff(depth, 2.0 * load, -10.0) == (False, False, NEVER)
-
-
 FOLLOW = interpreted(make_follow(TURNS))
 
 

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from interpreted import interpreted
 from plain_facts import one_row
+from test_foreseen_impacts import HAIR, SPRUNG, Row
 
+from lavendersim.engine.approach import NEVER
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.stiff_springs import (
     FAST,
@@ -97,3 +99,25 @@ def test_surfaces_without_a_spring_give_back_their_restitution() -> None:
     assert both(rigid, 1.0) == 0.9
     alone = interpreted(make_restitution_of(ORDERED))
     assert alone(one_row(compliance=0.0, damping_ratio=0.0), 1.0) == 0.0
+
+
+def stiff(phi: float, v: float, a: float = 0.0, ratio: float = 1.0) -> tuple[bool, bool, float]:
+    """Foresee of a ball of 1 kg on a spring of dt^2/(m c) = 100."""
+    row = Row(SPRUNG, compliance=0.01 * STEP**2, damping_ratio=ratio).moves(phi, v, a)
+    row.bodies["inv_m"][1] = 1.0
+    return row.foresee()
+
+
+def test_springs_that_steps_do_not_resolve_have_impacts() -> None:
+    assert stiff(0.0, -1.0) == (True, False, NEVER)
+    assert stiff(1e-3, -1.0) == (False, True, pytest.approx(1e-3, rel=1e-12))
+    assert stiff(0.0, 1.0)[0] is False
+
+
+def test_what_presses_such_a_spring_has_one_as_it_is_faster_than_its_load_makes_it() -> None:
+    """Forces change 10 m/s^2 in a step; of what is undamped the spring gives all back."""
+    load, depth = 10.0 * STEP, -1e-5
+    for share, expected in ((1.0 + HAIR, True), (1.0 - HAIR, False)):
+        assert stiff(depth, -share * load, -10.0) == (expected, False, NEVER)
+    assert stiff(depth, -2.0 * load, -10.0, 0.0) == (False, False, NEVER)
+    assert stiff(depth, 2.0 * load, -10.0) == (False, False, NEVER)
