@@ -82,7 +82,6 @@ def make_foresee(spec: Spec) -> Any:
     turns, gap_acceleration = step_terms(spec).turns, make_gap_acceleration(spec)
     restitution, compliance = may_rebound(spec), row_terms(spec).compliant
     springs = row_terms(spec).elastic
-    controlled = step_terms(spec).substeps
     takes_time: Any = make_takes_time(spec) if springs else None
     restitution_of: Any = make_restitution_of(spec) if restitution else None
     draws, is_drawn = made_once(spec, "is_drawn")
@@ -95,10 +94,10 @@ def make_foresee(spec: Spec) -> Any:
         if compliance:
             soft = pair.compliance > 0.0
         if springs:
-            # Its law reckons with what is left of a gap. An error that is estimated wants it met.
+            # Its law reckons with what is left of a gap. A part that began where it is met would be
+            # the same of a substep whole and in halves, and have no error that is estimated.
             if takes_time(contact, pair, bodies, params):
-                if not (soft and controlled) or contact.phi <= TOUCHING:
-                    return False
+                return False
         elif soft:  # its impulse takes time: none at an instant
             return False
         v = contact.rate

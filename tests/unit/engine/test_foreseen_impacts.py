@@ -269,7 +269,8 @@ SPRUNG = SPEC.including("compliance", "contact_spring")
 WHOLE = SPEC.including("overlooked_points")
 COMPLIANT = SPEC.including("compliance")
 TURNS_WHOLE = TURNS.including("overlooked_points")
-MORE = COHESIVE, SPRUNG, WHOLE, COMPLIANT, TURNS_WHOLE
+CONTROLLED = SPRUNG.including("error_control")
+MORE = COHESIVE, SPRUNG, CONTROLLED, WHOLE, COMPLIANT, TURNS_WHOLE
 FORESEE |= {spec: interpreted(make_foresee(spec)) for spec in MORE}
 
 
@@ -296,6 +297,7 @@ def test_springs_push_across_a_gap_and_without_an_impact() -> None:
     soft = {"compliance": 1e-4}
     assert Row(SPRUNG, **soft).moves(0.0, -1.0, 0.0).foresee() == (False, False, NEVER)
     assert Row(SPRUNG, **soft).moves(1e-3, -1.0, 0.0).foresee() == (False, False, NEVER)
+    assert Row(CONTROLLED, **soft).moves(1e-3, -1.0, 0.0).foresee() == (False, False, NEVER)
     assert Row(COMPLIANT, **soft).moves(1e-3, -1.0, 0.0).foresee() == (False, False, NEVER)
     assert Row(SPRUNG).moves(0.0, -1.0, 0.0).foresee()[0]
 
