@@ -30,6 +30,7 @@ from .records import TOUCHING
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
+from .stiff_springs import make_restitution_of, make_takes_time, may_rebound
 
 # Shortest flight after an impact, in timesteps: shorter ones are contact.
 FLIGHT = 1.0 / 64.0
@@ -44,6 +45,9 @@ FALL = 1e-5
 CLOSED = 1.0 / 64.0
 # CONTACT.waits of what flies between rebounds, until it is known whether its pair does.
 REBOUNDS = 2
+# Slowest impact of a spring that is pressed, in what forces change in what is left of the step: it
+# swings by its load as fast, which is no impact. What is undamped has none there.
+PRESSED = 1.0
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
 
@@ -76,22 +80,25 @@ def make_foresee(spec: Spec) -> Any:
     change_ahead = make_change_ahead(spec)
     relative_speed, is_impact = make_relative_speed(spec), make_is_impact(spec)
     turns, gap_acceleration = step_terms(spec).turns, make_gap_acceleration(spec)
-    restitution, compliance = step_terms(spec).rebounds, row_terms(spec).compliant
-    springs, curved = row_terms(spec).elastic, row_terms(spec).curved
+    restitution, compliance = may_rebound(spec), row_terms(spec).compliant
+    springs = row_terms(spec).elastic
+    takes_time: Any = make_takes_time(spec) if springs else None
+    restitution_of: Any = make_restitution_of(spec) if restitution else None
     draws, is_drawn = made_once(spec, "is_drawn")
     overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
     acceleration_of_rope: Any = make_gap_acceleration_of_rope(spec) if ropes else None
-    falls, restitution_at = made_once(spec, "restitution_at")
 
     def foresee(contact, pair, bodies, motion, params, met):
         left = params.dt
-        soft = False  # its impulse takes time: none at an instant
+        soft = False
         if compliance:
             soft = pair.compliance > 0.0
-        if curved:
-            if pair.hertz_stiffness > 0.0:  # its law reckons with what is left of a gap
+        if springs:
+            # Its law reckons with what is left of a gap. A part that began where it is met would be
+            # the same of a substep whole and in halves, and have no error that is estimated.
+            if takes_time(contact, pair, bodies, params):
                 return False
-        if soft and not springs:
+        elif soft:  # its impulse takes time: none at an instant
             return False
         v = contact.rate
         if contact.phi <= TOUCHING and abs(v) <= CREEP:
@@ -104,16 +111,14 @@ def make_foresee(spec: Spec) -> Any:
                 swung = acceleration_of_rope(end_a, end_b, bodies, motion) * left
                 dv, most = dv + swung, most + abs(swung)
         a, e = (change_ahead(contact, motion) + swung) / left, 0.0
-        if restitution:
-            e = pair.restitution
         gap = contact.phi if contact.phi > TOUCHING else 0.0
-        if soft and gap == 0.0:
-            return False
         squared = v * v - 2.0 * a * gap
         meets = gap == 0.0 and v < 0.0
         speed = -v if meets else sqrt(max(squared, 0.0))
-        if falls:
-            e = restitution_at(e, pair, speed)
+        if restitution:
+            e = restitution_of(pair, speed)
+        if soft and contact.phi < -TOUCHING:  # it is pressed: the spring moves it
+            return meets and e < 1.0 and speed > max(least, PRESSED * most)
         if meets:
             return is_impact(speed, least, dv, 0.0 if met else most, e, params)
         if e > 0.0 and contact.phi <= params.slop and v > 0.0:
@@ -171,14 +176,15 @@ def make_rebounds(spec: Spec) -> Any:
 
     Asked of rows, not of the engine: where nothing rebounds, bits are those without restitution.
     """
-    if not step_terms(spec).rebounds:
+    if not may_rebound(spec):
         return None
+    restitution_of = make_restitution_of(spec)
 
     def rebounds(state, count):
         contacts, pairs = state.contacts, state.pairs
         found = False
         for c in range(count):
-            found = found or pairs[contacts[c].pair].restitution > 0.0
+            found = found or restitution_of(pairs[contacts[c].pair], 0.0) > 0.0
         return found
 
     return kernel(rebounds, spec)

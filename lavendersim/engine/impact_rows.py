@@ -12,6 +12,7 @@ from .records import TOUCHING
 from .row_terms import make_is_soft, row_terms
 from .spec import Spec
 from .step_terms import step_terms
+from .stiff_springs import make_takes_time
 
 # What two bodies that turn close of their last gaps in one instant, in slops. A face that comes
 # down about an edge which lies a slop deep meets with the points next to that edge before others.
@@ -94,7 +95,7 @@ def _make_together(spec: Spec) -> Any:
     slowest, springs = make_slowest(spec), row_terms(spec).elastic
     bilateral, turns = row_terms(spec).bilateral, step_terms(spec).turns
     meet_flush: Any = make_meet_flush(spec) if turns else None
-    is_soft: Any = make_is_soft(spec) if springs else None
+    takes_time: Any = make_takes_time(spec) if springs else None
 
     def hands_on(contact, bodies, motion):
         # What does not move hands nothing on.
@@ -116,7 +117,9 @@ def _make_together(spec: Spec) -> Any:
             contact = contacts[c]
             takes_part = contact.phi <= TOUCHING or (contact.phi <= slop and contact.waits == 0)
             if springs:
-                takes_part = takes_part and not is_soft(pairs[contact.pair])
+                takes_part = takes_part and not takes_time(
+                    contact, pairs[contact.pair], bodies, params
+                )
             if bilateral:
                 takes_part = takes_part or contact.bilateral == 1
             if takes_part:

@@ -12,8 +12,8 @@ from typing import Any
 
 from .compile import either, greatest, kernel
 from .contact import make_apply_start
+from .contact_spring_law import make_linearise
 from .effects import has_hook, made_by, made_once
-from .hertz_law import make_linearise
 from .midpoint_geometry import (
     make_keep_start,
     make_look,
@@ -77,8 +77,8 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
     differs_midway: Any = either(differing, spec) if differs else None
     note_middle: Any = greatest(noting, spec) if notes else None
     acts_midway, act_midway = made_once(spec, "act_midway")
-    curved = row_terms(spec).curved
-    linearise: Any = make_linearise(spec) if curved else None
+    springs = row_terms(spec).elastic
+    linearise: Any = make_linearise(spec) if springs else None
 
     def has_impact(contacts, count):
         found = False
@@ -197,7 +197,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 contact = contacts[c]
                 if acts(contact):
                     apply_start(contact, velocities[contact.a], velocities[contact.b])
-            if curved:
+            if springs:
                 linearise(contacts, count, velocities, params)
             missed, _ = residual(contacts, count, velocities)
             if notes:

@@ -26,12 +26,12 @@ from typing import Any
 
 from .approach import CREEP, NEVER, OVERLAP, make_forced, make_rate, normal
 from .compile import inner, kernel
-from .effects import made_once
 from .foreseen_impacts import FLIGHT, make_is_impact
 from .integrate import ALWAYS
 from .records import BOX, HULL, PLANE, SPHERE, TOUCHING
 from .spec import Spec
 from .step_terms import step_terms
+from .stiff_springs import make_restitution_of, may_rebound
 from .vectors import Vec3, cross, dot, length, minus, position
 
 # What a part may lead a point without a row into the other surface [m]: the next part would give up
@@ -106,8 +106,8 @@ def make_look_over(spec: Spec) -> Any:
     """
     rate, turns = make_rate(spec), step_terms(spec).turns
     forced, is_impact = make_forced(spec), make_is_impact(spec)
-    restitution = step_terms(spec).rebounds
-    falls, restitution_at = made_once(spec, "restitution_at")
+    restitution = may_rebound(spec)
+    restitution_of: Any = make_restitution_of(spec) if restitution else None
 
     def turned(n, w, arm, dt):
         # What turning the arm moves its end along n, beside what its rate at the start does [m].
@@ -125,9 +125,7 @@ def make_look_over(spec: Spec) -> Any:
         # Whether that is an impact; slower it is a contact of the motion, as any is.
         e = 0.0
         if restitution:
-            e = pair.restitution
-        if falls:
-            e = restitution_at(e, pair, speed)
+            e = restitution_of(pair, speed)
         dv, most = forced(point, motion)
         return is_impact(speed, CREEP, dv, most, e, params)
 

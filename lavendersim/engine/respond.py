@@ -15,8 +15,8 @@ from typing import Any
 from . import ordering
 from .compile import chain, kernel, separate
 from .contact import make_append_contact, make_apply_start
+from .contact_spring_law import make_solve_by_tangents
 from .effects import has_hook, made_by, made_once
-from .hertz_law import make_solve_by_tangents
 from .integrate import keeps_motion, make_classify
 from .joint_turn import make_joint_velocity
 from .midpoint_passes import make_midpoint_passes, make_stand_up
@@ -28,12 +28,13 @@ from .solvers.catalogue import SOLVERS
 from .solvers.solver import ContactSystem
 from .spec import Spec
 from .step_terms import step_terms
+from .stiff_springs import may_rebound
 
 
 def make_solve(spec: Spec) -> Any:
     """Return the solver's kernel, with impulses chosen where the laws leave them open."""
     linear = _make_solve_and_choose(spec)
-    return make_solve_by_tangents(spec, linear) if row_terms(spec).curved else linear
+    return make_solve_by_tangents(spec, linear) if row_terms(spec).elastic else linear
 
 
 def _make_solve_and_choose(spec: Spec) -> Any:
@@ -81,7 +82,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     preload: Any = chain(loads, spec) if loaded else None
 
     ordered, centred = step_terms(spec).ordered_impacts, step_terms(spec).centred
-    rebounds = ordered and step_terms(spec).rebounds
+    rebounds = ordered and may_rebound(spec)
     lasting: Any = make_lasting(spec) if centred else None
     is_moving: Any = make_is_moving(spec) if centred else None
     bilateral = row_terms(spec).bilateral
@@ -248,6 +249,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
 def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
     """Return `kernel(contacts, velocities, motion, params, counters, log)`: for no contact."""
     logs, keeps = has_hook(spec, "log_contacts"), keeps_motion(spec)
+    stores, contact_energy = made_once(spec, "contact_energy")
     classify: Any = make_classify(spec) if keeps else None
 
     def pass_by(contacts, velocities, motion, params, counters, log):
@@ -255,6 +257,8 @@ def make_pass_by(spec: Spec, log_contacts: Any) -> Any:
         counters.residual, counters.residual_contact = 0.0, -1
         counters.not_converged, counters.stronge, counters.sharpen = 0, 0, 0
         counters.cached, counters.contact_energy = 0, 0.0
+        if stores:
+            counters.contact_energy = contact_energy(contacts, 0, velocities, params)
         if logs:
             log_contacts(contacts, 0, velocities, params, counters, log)
         if keeps:

@@ -11,8 +11,8 @@ from typing import Any
 
 from .compile import kernel
 from .contact import make_normal_velocity
+from .contact_spring_law import make_stored
 from .effects import has_hook
-from .hertz_law import make_stored
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
@@ -78,11 +78,9 @@ def make_note_working(spec: Spec) -> Any:
 def make_stored_in_contacts(spec: Spec) -> Any:
     """Return `kernel(contacts, count, rows, shifts) -> (won, had)`: by contact springs [J].
 
-    Of unions that nothing works on. shifts: displacements [m, rad]. A spring acts through all of a
-    step in which it pushes, so its stretch counts there as its compression does.
+    Of unions that nothing works on. shifts: displacements [m, rad].
     """
-    normal_shift, curved = make_normal_velocity(spec), row_terms(spec).curved
-    stored: Any = make_stored(spec) if curved else None
+    normal_shift, stored = make_normal_velocity(spec), make_stored(spec)
 
     def stored_in_contacts(contacts, count, rows, shifts):
         won, had = 0.0, 0.0
@@ -94,11 +92,7 @@ def make_stored_in_contacts(spec: Spec) -> Any:
             if rows[group - 1].again == 1 and rows[group - 1].worked == 0:
                 begin = contact.phi
                 end = begin + normal_shift(contact, shifts[contact.a], shifts[contact.b])
-                before = 0.5 * begin * begin / contact.spring_compliance
-                after = 0.5 * end * end / contact.spring_compliance
-                if curved:
-                    if contact.hertz_stiffness > 0.0:  # what it stores as it leaves is none
-                        before, after = stored(contact, -begin), stored(contact, -end)
+                before, after = stored(contact, -begin), stored(contact, -end)
                 won, had = won + (after - before), had + min(before, after)
         return won, had
 

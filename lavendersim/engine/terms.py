@@ -30,7 +30,7 @@ class RowTerms:
     shifted: bool = False  # surface_1, surface_2 add to the slip [m/s]
     taut: bool = False  # some of a normal are ropes: `span` is above 0 [m]
     elastic: bool = False  # some push as springs, `spring_compliance`, never at an instant
-    curved: bool = False  # some of those by a law that bends, `hertz_stiffness`: `hertz_law`
+    curved: bool = False  # some of those by Hertz's law, `hertz_stiffness`: `contact_spring_law`
     swept: bool = False  # some are of where fast bodies meet: `tangential_x`, y, z [m]
 
 

@@ -38,7 +38,9 @@ ELSEWHERE = {
         "engine/row_terms.py": FIELD,
         "engine/foreseen_impacts.py": FIELD,
         "engine/spring_surfaces.py": FIELD,
+        "engine/stiff_springs.py": FIELD,
         "engine/effects/decision.py": "which pairs give way",
+        "engine/effects/impact_energy.py": "its impacts give back, too",
         "engine/effects/contact_spring.py": "is another law of it",
         "engine/effects/hertz_contact.py": "no compliance may be beside it",
     },
@@ -55,6 +57,7 @@ ELSEWHERE = {
         "engine/foreseen_impacts.py": FIELD,
         "engine/impact_rows.py": FIELD,
         "engine/overlooked_points.py": FIELD,
+        "engine/stiff_springs.py": FIELD,
     },
     "speculative": {
         "engine/effects/decision.py": FACT,

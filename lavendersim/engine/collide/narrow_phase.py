@@ -11,7 +11,7 @@ from ..compile import inner, kernel
 from ..effects import has_hook, made_once
 from ..overlooked_points import make_note_left_out
 from ..records import ROPE, TOUCHING
-from ..row_terms import row_terms
+from ..row_terms import make_is_soft, row_terms
 from ..spec import Spec
 from ..step_terms import step_terms
 from ..vectors import Vec3, dot
@@ -22,8 +22,9 @@ from .records import put_normal
 from .rope import make_rope
 from .swept import make_is_fast, make_swept_manifold
 
-# Springs that begin to push within a step may hit a body that does not move yet, which then
-# meets others: contacts by `hertz_law` are looked for so many reaches of the fastest ahead [-].
+# Springs may give in a step what they store, or hit a body that does not move yet, which then
+# meets others: contacts by `contact_spring_law` are looked for so many reaches of the fastest
+# ahead, what springs may give it included [-].
 REACHES = 4.0
 
 
@@ -110,7 +111,8 @@ def make(spec: Spec):
     bilateral, levers = row_terms(spec).bilateral, row_terms(spec).levers
     bounded, stopped = row_terms(spec).bounded, row_terms(spec).stopped
     sleeps, still = made_once(spec, "is_still")
-    overlooks, curved = step_terms(spec).overlooks, row_terms(spec).curved
+    overlooks, springs = step_terms(spec).overlooks, row_terms(spec).elastic
+    is_soft: Any = make_is_soft(spec) if springs else None
     marks, mark_middle = made_once(spec, "mark_middle")
     note_left_out: Any = make_note_left_out(spec) if overlooks else None
 
@@ -124,9 +126,9 @@ def make(spec: Spec):
         if overlooks:
             workspace.overlooked.noted[0] = 0
         widest = 0.0
-        if curved:
+        if springs:
             for i in range(motion.shape[0]):
-                widest = max(widest, motion[i].reach)
+                widest = max(widest, motion[i].reach + dt * state.velocities[i].released)
             widest = TOUCHING + REACHES * widest
         for p in range(listed):
             i, j = pairs[p].a, pairs[p].b
@@ -143,8 +145,8 @@ def make(spec: Spec):
             if speculative:
                 ma, mb = motion[owner_i], motion[owner_j]
                 margin = TOUCHING + ma.reach + mb.reach
-                if curved:
-                    if pairs[p].hertz_stiffness > 0.0:
+                if springs:
+                    if is_soft(pairs[p]):
                         margin = max(margin, widest)
             if sweeps:
                 d = displacement(motion[owner_i], motion[owner_j], share, dt)

@@ -1,28 +1,31 @@
 """Contact spring: a compliance is a spring at its contact, with a damper where a ratio is given.
 
     F = d/c + k_d d',   k_d = 2 zeta sqrt(m/c),   m = 1/k_n,   0 <= F
-d is the penetration: c N at rest, and a period of 2 pi sqrt(m c). By the trapezoidal rule, of
-bodies that move by the mean of the velocities at the step's ends (`contact_midpoint`),
+d is the penetration: c N at rest, and a period of 2 pi sqrt(m c). A step solves the law itself
+(`contact_spring_law`): of bodies that move by the mean of the velocities at its ends
+(`contact_midpoint`) by the discrete gradient of the energy that is stored, which is the trapezoidal
+rule inside,
     lambda = dt (d_0 + d_1)/(2 c) + k_d (d_1 - d_0),   d_1 = d_0 - dt (v_0 + v_1)/2
-it is a row v_1 + target + gamma lambda >= 0 with
-    gamma = 4 c/(dt^2 + 2 dt c k_d),   target = v_0 - gamma dt d_0/c
-which is of order 2 and keeps the energy while the contact lasts. Of bodies that move by v_1 alone
-it is, by the implicit Euler rule, a row with
-    gamma = c/(dt^2 + dt c k_d),   target = -gamma dt d_0/c
-A contact with a spring has no impact, so its restitution has no effect, and it is not projected.
+and keeps the energy where surfaces meet and leave within the step, too; of order 2. Of bodies that
+move by v_1 alone by the implicit Euler rule, of order 1. The restitution of surfaces with a spring
+has no effect, and they are not projected.
+
+Where impacts are in order and no accuracy is asked for, what meets on a spring that steps do not
+resolve, dt^2 (1/m_A + 1/m_B) > 4 c, has an impact, which gives back what the spring and its damper
+would (`stiff_springs`): exp(-2 a cot a) of the speed, cos a = zeta; no damper pulls.
 """
 
 from math import sqrt
-from typing import Any
 
+from ..records import INSTANT
 from ..step_terms import step_terms
 from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Balance, Choice, Column, Effect, Fields, Hooks, kernel
 from .keys import COEFFICIENT, SurfaceKey, larger
 
-# dt^2/(m c) above which steps do not resolve a swing, as in `spring_midpoint`.
-FAST = 4.0
+# Force of a spring, in the energy it stores by its depth: 2 of the linear law, 5/2 of Hertz's [-].
+STEEPEST = 2.5
 
 
 def _described(pair: PairFacts[str]) -> str:
@@ -45,90 +48,79 @@ def decide(facts: Facts) -> Decision:
 
 def make_row(spec):
     """Return `kernel(contact, v, params)`: target and gamma; v: v_n as the step begins [m/s]."""
-    from ..hertz_law import make_touch
-    from ..row_terms import row_terms
+    from ..contact_spring_law import make_touch
 
-    linear_row = _make_linear_row(spec)
-    if not row_terms(spec).curved:
-        return linear_row
     touch = make_touch(spec)
 
     def spring_row(contact, v, params):
-        if contact.hertz_stiffness > 0.0:
-            contact.spring_v = v
-            touch(contact, v, params)
-        else:
-            linear_row(contact, v, params)
+        contact.spring_v = v
+        touch(contact, v, params)
 
     return kernel(spring_row, spec)
 
 
-def _make_linear_row(spec):
-    mean = step_terms(spec).centred
-
-    def linear_row(contact, v, params):
-        dt, c = params.dt, contact.spring_compliance
-        damping = 2.0 * contact.damping_ratio / sqrt(contact.k_n * c)
-        contact.spring_v = v
-        if mean and damping > 0.0 and dt * dt * contact.k_n > FAST * c:
-            # See `spring_midpoint`: a damper more where the step does not resolve the spring.
-            more = min(1.0, 0.25 * damping * contact.k_n * dt) * dt * dt / c
-            both = 0.25 * dt * dt / c + 0.5 * damping * dt
-            contact.gamma = 1.0 / (both + 0.75 * more)
-            contact.target = (both + 0.25 * more) * contact.gamma * v
-            contact.target += contact.gamma * dt * contact.phi / c
-        elif mean:
-            contact.gamma = 4.0 * c / (dt * (dt + 2.0 * c * damping))
-            contact.target = v + contact.gamma * dt * contact.phi / c
-        else:
-            contact.gamma = c / (dt * (dt + c * damping))
-            contact.target = contact.gamma * dt * contact.phi / c
-
-    return kernel(linear_row, spec)
-
-
 def make(spec):
     """Return `kernel(contact, pair, params)`."""
-    linear_row = _make_linear_row(spec)
-    mean = step_terms(spec).centred
+    from ..row_terms import row_terms
+    from ..stiff_springs import has_impacts, rebound
+    from . import has_hook
+
+    spring_row, curved = make_row(spec), row_terms(spec).curved
+    mean, impacts = step_terms(spec).centred, has_impacts(spec)
+    falls = has_hook(spec, "restitution_at")
 
     def spring(contact, pair, params):
         contact.spring_compliance = pair.compliance
         contact.damping_ratio = pair.damping_ratio
-        if pair.compliance > 0.0:
+        if curved:
+            contact.hertz_stiffness = 0.0
+        instant = False
+        if impacts:
+            instant = params.dt <= INSTANT
+        if instant:  # an impact: nothing is pressed in
+            contact.spring_compliance, contact.gamma = 0.0, 0.0
+            if pair.compliance > 0.0:
+                contact.e = rebound(pair.damping_ratio)
+                if falls:
+                    contact.yield_speed = 0.0
+        elif pair.compliance > 0.0:
             v = contact.v_n_pre
             if mean:
                 v -= contact.dv_n
-            linear_row(contact, v, params)
+            spring_row(contact, v, params)
 
     return kernel(spring, spec)
 
 
 def make_energy(spec):
-    """Return `kernel(contacts, count, velocities, params) -> energy` after the solve [J]."""
-    from ..contact import make_normal_velocity
-    from ..hertz_law import make_stored
-    from ..row_terms import row_terms
+    """Return `kernel(contacts, count, velocities, params) -> energy` after the solve [J].
 
-    curved = row_terms(spec).curved
-    stored: Any = make_stored(spec) if curved else None
-    normal_velocity = make_normal_velocity(spec)
+    Velocities note what springs may give of it in the next step, by energy and by force.
+    """
+    from ..contact import make_normal_velocity
+    from ..contact_spring_law import make_stored
+
+    stored, normal_velocity = make_stored(spec), make_normal_velocity(spec)
     mean = step_terms(spec).centred
 
     def spring_energy(contacts, count, velocities, params):
         total = 0.0
+        for i in range(velocities.shape[0]):
+            velocities[i].released = 0.0
         for c in range(count):
             contact = contacts[c]
             if contact.spring_compliance > 0.0:
                 v = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
                 if mean:
                     v = 0.5 * (v + contact.spring_v)
-                depth = max(-(contact.phi + params.dt * v), 0.0)
-                energy = 0.5 * depth * depth / contact.spring_compliance
-                if curved:
-                    if contact.hertz_stiffness > 0.0:
-                        energy = stored(contact, depth)
+                depth = -(contact.phi + params.dt * v)
+                energy = stored(contact, depth)
                 total += energy
+                if energy > 0.0:
+                    speed = sqrt(2.0 * energy * contact.k_n)
+                    speed = min(speed, STEEPEST * energy / depth * contact.k_n * params.timestep)
+                    a, b = velocities[contact.a], velocities[contact.b]
+                    a.released, b.released = max(a.released, speed), max(b.released, speed)
         return total
 
     return kernel(spring_energy, spec)
@@ -171,6 +163,7 @@ EFFECT = Effect(
     row=RowTerms(elastic=True),
     fields=Fields(
         pair=[("damping_ratio", "f8")],  # zeta of the pair [-]
+        velocity=[("released", "f8")],  # speed that a spring may give in a step [m/s]
         contact=[
             ("spring_compliance", "f8"),  # c; 0: a rigid contact [m/N]
             ("damping_ratio", "f8"),  # zeta [-]

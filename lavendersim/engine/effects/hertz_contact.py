@@ -9,7 +9,7 @@ that of one on a rigid plane by 2^(3/2). The damping is that of Hunt and Crossle
 background, not opened): no force at first touch, none that pulls, and of slow impacts a restitution
 of 1 - 2/3 a v.
 
-A step solves the law itself (`hertz_law`), of order 2 where bodies move by the mean of the
+A step solves the law itself (`contact_spring_law`), of order 2 where bodies move by the mean of the
 velocities at its ends, of order 1 elsewhere. Such a contact is a `contact_spring`: it has no
 impact, so that its restitution has no effect, and it is not projected.
 """
@@ -83,7 +83,7 @@ def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
 
 def make(spec: Spec) -> Kernel:
     """Return `kernel(contact, pair, params)`, behind that of `contact_spring`."""
-    from ..hertz_law import make_touch
+    from ..contact_spring_law import make_touch
 
     touch, mean = make_touch(spec), step_terms(spec).centred
 

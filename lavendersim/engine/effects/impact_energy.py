@@ -15,7 +15,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..spec import Spec
-from .decision import Decision, Facts
+from .decision import Decision, Facts, PairFacts
 from .effect import Column, Effect, Fields, Hooks, kernel
 
 # Gain, relative to the work's own size, that is round-off.
@@ -23,11 +23,20 @@ ROUND_OFF = 1e-13
 HALVINGS = 60
 
 
+def gives_back(pair: PairFacts[str], facts: Facts) -> bool:
+    """Whether impacts of a pair may throw back: by its restitution, or as springs by damping."""
+    if pair.surface.restitution > 0.0:
+        return True
+    resolved = facts.compliance_law != "spring" or facts.accuracy is not None
+    resolved = resolved or facts.impacts != "in_order" or facts.stabilisation_gain > 0.0
+    return bool(pair.surface.compliance > 0.0 and not resolved)
+
+
 def decide(facts: Facts) -> Decision:
     """On where impacts at the surface may bounce with friction."""
     if facts.impacts == "captured":
         return Decision(False, f"impacts are {facts.impacts}")
-    if not any(pair.surface.restitution > 0.0 for pair in facts.pairs):
+    if not any(gives_back(pair, facts) for pair in facts.pairs):
         return Decision(False, "every pair that may touch has restitution 0")
     for pair in facts.pairs:
         if pair.surface.friction > 0.0 or pair.resists_turning:
@@ -175,7 +184,7 @@ EFFECT = Effect(
     name="impact_energy",
     decide=decide,
     per="contact",
-    needs=("friction", "impact_time", "restitution"),
+    needs=("friction", "impact_time"),
     fields=Fields(
         contact=[
             ("pre_1", "f8"),  # slip before the solve [m/s]

@@ -108,6 +108,7 @@ def make_order(spec: Spec) -> Any:
     from ..impact_location import make_locate
     from ..impact_rows import make_keep_motion, make_keep_present, make_mark_impact
     from ..row_terms import make_is_soft, row_terms
+    from ..stiff_springs import may_rebound
     from . import made_once
 
     expect, depth = make_expect(spec), make_depth(spec)
@@ -120,7 +121,7 @@ def make_order(spec: Spec) -> Any:
     turns = step_terms(spec).turns
     springs, ropes = row_terms(spec).elastic, row_terms(spec).taut
     bilateral, stopped = row_terms(spec).bilateral, row_terms(spec).stopped
-    rebounds = step_terms(spec).rebounds
+    rebounds = may_rebound(spec)
     any_rebounds: Any = make_rebounds(spec)
     stops, first_stop = made_once(spec, "first_stop")
 
@@ -241,6 +242,10 @@ def make_order(spec: Spec) -> Any:
                 break
             due = locate(state, count, contact, workspace, params)
             contact.located, contact.due = LOCATED, due
+        if springs:
+            for c in range(count):
+                if is_soft(state.pairs[contacts[c].pair]):
+                    contacts[c].waits = 0  # its law reckons with gaps, whatever closes them
         count = keep_motion(contacts, count, workspace.overlooked)
         return count, until_stop(state, count, length, params, counters)
 

@@ -40,12 +40,13 @@ def make_mark_impact(spec: Spec) -> Any:
     """
     from ..approach import MEETS, make_slowest
     from ..impact_rows import make_meet_flush
-    from ..row_terms import make_is_soft, row_terms
+    from ..row_terms import row_terms
+    from ..stiff_springs import make_takes_time
 
     slowest, springs = make_slowest(spec), row_terms(spec).elastic
     turns = step_terms(spec).turns
     meet_flush: Any = make_meet_flush(spec) if turns else None
-    is_soft: Any = make_is_soft(spec) if springs else None
+    takes_time: Any = make_takes_time(spec) if springs else None
 
     def mark_pairs(state, count, params):
         contacts, pairs, bodies, motion = state.contacts, state.pairs, state.bodies, state.motion
@@ -68,7 +69,8 @@ def make_mark_impact(spec: Spec) -> Any:
                     continue
                 takes_part = contact.phi <= max(TOUCHING, params.slop)
                 if springs:
-                    takes_part = takes_part and not is_soft(pairs[contact.pair])
+                    pair = pairs[contact.pair]
+                    takes_part = takes_part and not takes_time(contact, pair, bodies, params)
                 if takes_part and contact.rate <= slowest(contact, bodies, motion):
                     contact.waits = 0
                     rows += 1

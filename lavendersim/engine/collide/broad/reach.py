@@ -5,8 +5,9 @@
 The narrow phase must not make speculative contacts beyond the sum of two reaches and TOUCHING.
 Where it makes some, forces have acted on v and omega before pairs are looked for, and the first two
 terms are its own bound (`integrate.make_begin`); what gravity adds in two steps is a margin, which
-what nothing can push has not. Without speculative contacts only what touches when the step begins
-matters, and velocities may be those before forces.
+what nothing can push has not. What springs of contacts may give a body counts as its speed.
+Without speculative contacts only what touches when the step begins matters, and velocities may be
+those before forces.
 """
 
 from __future__ import annotations
@@ -14,13 +15,14 @@ from __future__ import annotations
 from math import sqrt
 
 from ...compile import kernel
+from ...row_terms import row_terms
 from ...spec import Spec
 from ...step_terms import step_terms
 
 
 def make_reach(spec: Spec):
     """Return `kernel(body, velocity, params) -> reach [m]`; a body with parts has its own bound."""
-    turns = step_terms(spec).turns
+    turns, springs = step_terms(spec).turns, row_terms(spec).elastic
 
     def reach(body, velocity, params):
         vx, vy, vz = velocity.vx, velocity.vy, velocity.vz
@@ -28,6 +30,8 @@ def make_reach(spec: Spec):
         if turns:
             wx, wy, wz = velocity.wx, velocity.wy, velocity.wz
             speed += sqrt(wx * wx + wy * wy + wz * wz) * body.bound
+        if springs:
+            speed += velocity.released
         far = speed * params.dt
         if body.inv_m > 0.0:
             gx, gy, gz = params.gx, params.gy, params.gz

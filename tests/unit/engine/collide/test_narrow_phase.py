@@ -13,9 +13,14 @@ from interpreted import interpreted, records
 from plain_facts import one_row, vector_fields
 
 from lavendersim.engine.collide import SHAPE_PAIRS
-from lavendersim.engine.collide.narrow_phase import displacement, make, make_manifold
+from lavendersim.engine.collide.narrow_phase import REACHES, displacement, make, make_manifold
 from lavendersim.engine.collide.scratch import allocate_scratch
-from lavendersim.engine.record_layout import allocate_bodies, allocate_pairs, contact_dtype
+from lavendersim.engine.record_layout import (
+    allocate_bodies,
+    allocate_pairs,
+    allocate_velocities,
+    contact_dtype,
+)
 from lavendersim.engine.records import MOTION, PLANE, SPHERE, TOUCHING, dtype
 from lavendersim.engine.spec import Spec
 
@@ -38,6 +43,7 @@ class Balls:
         if "owner" in self.bodies.dtype.names:
             self.bodies["owner"] = np.arange(count)
         self.motion = np.zeros(count, dtype(MOTION))
+        self.velocities = allocate_velocities(spec, count)
         listed = list(combinations(range(count), 2))
         self.pairs, self.contacts = (
             allocate_pairs(spec, len(listed)),
@@ -51,6 +57,7 @@ class Balls:
         """Return the rows in use, or -1."""
         names = ("bodies", "motion", "pairs", "contacts")
         state = SimpleNamespace(**{name: records(getattr(self, name)) for name in names})
+        state.velocities = records(self.velocities)
         workspace = SimpleNamespace(collision=records(allocate_scratch(None)))
         kernel = interpreted(make(self.spec))
         count = kernel(state, len(self.pairs) if listed is None else listed, workspace, DT)
@@ -92,6 +99,18 @@ def test_contacts_are_those_within_reach_of_both_bodies(rng) -> None:
             at = np.array([b[x] for x in "xyz"]) - normal * (b["hx"] + 0.5 * gap)
             np.testing.assert_allclose([row[x] for x in "xyz"], at, atol=1e-14)
     assert len(counts) > 4
+
+
+@pytest.mark.parametrize("soft", [0.0, 1e-6])
+def test_springs_are_looked_for_as_far_as_what_is_thrown_may_go(soft: float) -> None:
+    """REACHES of the fastest, be it thrown by a spring; of rigid pairs as far as both move."""
+    spec = SPEC.including("compliance", "contact_spring")
+    for far, count in ((0.999, 1), (1.001, 0)):
+        gap = TOUCHING + far * REACHES * (0.01 + 3.0 * DT)
+        balls = Balls([(0.0, 0.0, 1.0 + gap), (9.0, 0.0, 9.0)], [1.0, 1.0], spec)
+        balls.pairs["compliance"] = soft
+        balls.motion["reach"][2], balls.velocities["released"][2] = 0.01, 3.0
+        assert len(balls.look(listed=1)) == (count if soft > 0.0 else 0)
 
 
 def test_without_contacts_ahead_only_what_touches_is_one() -> None:

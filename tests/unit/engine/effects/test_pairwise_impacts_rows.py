@@ -66,10 +66,13 @@ def test_a_blow_is_handed_to_the_first_ball_of_a_row_alone() -> None:
     assert marked(rows_of([(0, 1), (1, 2), (2, 3)], [-1.0, 0.0, 0.0], [MEETS, FAR, FAR])) == {0}
 
 
-def test_springs_are_no_impacts() -> None:
-    contacts = rows_of([(0, 1), (0, 1)], [-1.0, -1.0])
-    contacts["pair"] = [0, 1]
-    assert marked(contacts, [0.0, 1e-5, *[0.0] * 6]) == {0}
+def test_springs_are_no_impacts_where_steps_resolve_them() -> None:
+    """Two balls of 1 kg: dt^2/(m c) = 2 dt^2/c, of 4 at the limit."""
+    limit = 0.5 * PARAMS.timestep**2
+    for share, taking in ((1.001, {0}), (0.999, {0, 1})):
+        contacts = rows_of([(0, 1), (0, 1)], [-1.0, -1.0])
+        contacts["pair"] = [0, 1]
+        assert marked(contacts, [0.0, share * limit, *[0.0] * 6]) == taking
 
 
 def test_it_is_on_where_it_is_asked_for_and_two_pairs_may_meet_at_once() -> None:

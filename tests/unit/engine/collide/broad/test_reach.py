@@ -12,6 +12,7 @@ from lavendersim.engine.records import ANGULAR_VELOCITY, BODY, VELOCITY, dtype
 from lavendersim.engine.spec import Spec
 
 DT = 0.01  # [s]
+VELOCITY_OF_SPRINGS = dtype(VELOCITY, [("released", "f8")])
 
 
 def reach_of(
@@ -39,6 +40,15 @@ def test_displacement_turn_and_fall_add_up() -> None:
 def test_what_nothing_can_push_does_not_fall_and_what_cannot_turn_does_not_turn() -> None:
     assert reach_of(inv_m=0.0, v=(1, 2, 2), g=(0, 0, -9.81)) == pytest.approx(3 * DT, rel=1e-15)
     assert reach_of(effects=(), omega=(3, -4, 12)) == 0.0
+
+
+def test_what_a_spring_may_give_counts_as_speed() -> None:
+    spec, velocity = Spec(("compliance", "contact_spring")), np.zeros(1, VELOCITY_OF_SPRINGS)
+    body, parameters = np.zeros(1, dtype(BODY)), allocate_parameters()
+    parameters["dt"], velocity["vx"], velocity["released"] = DT, 3.0, 0.7
+    reach = interpreted(make_reach(spec))
+    found = reach(records(body)[0], records(velocity)[0], records(parameters)[0])
+    assert found == pytest.approx(3.7 * DT, rel=1e-15)
 
 
 def test_no_point_of_a_body_in_flight_leaves_its_reach(rng) -> None:

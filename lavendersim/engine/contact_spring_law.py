@@ -1,11 +1,15 @@
-"""Hertz's contact with Hunt and Crossley's damping: impulse of a step, its tangent row, its energy.
+"""Laws of contact springs: impulse of a step, its tangent row, solves with new tangents; energy.
 
-    F = k d^(3/2) (1 + a d'),   0 <= F,   U = 2/5 k d^(5/2)          d = -phi where that is above 0
-Bodies that move by the mean of the velocities at the step's ends (`contact_midpoint`) get
-    lambda = dt G (1 + a r),   G = (U(d_1) - U(d_0))/(d_1 - d_0),   d_1 = d_0 + dt r
-    r = -(v_0 + v_1)/2
+    F = (d + c k_d d')/c,      0 <= F,   U = d^2/(2 c)              linear, k_d = 2 zeta sqrt(m/c)
+    F = k d^(3/2) (1 + a d'),  0 <= F,   U = 2/5 k d^(5/2)          Hertz, Hunt and Crossley
+where d = -phi is above 0. Bodies that move by the mean of the velocities at the step's ends
+(`contact_midpoint`) get
+    lambda = dt G + k_d (d_1^+ - d_0^+)      or      lambda = dt G (1 + a r)
+    G = (U(d_1) - U(d_0))/(d_1 - d_0),   d_1 = d_0 + dt r,   r = -(v_0 + v_1)/2,   d^+ = max(d, 0)
 G is the discrete gradient of U: without damping the work is the change of U to the last digit,
-where surfaces meet and leave, too. With a, b the roots of both depths, which does not cancel,
+where surfaces meet and leave, too; a damper takes some of it. The linear one inside is the
+trapezoidal rule, G = (d_0 + d_1)/(2 c). Hertz's is, with a, b the roots of both depths, which does
+not cancel,
     G = 2/5 k (a^4 + a^3 b + a^2 b^2 + a b^3 + b^4)/(a + b)
     dG/dd_1 = k/5 (2 a^3 + 4 a^2 b + 6 a b^2 + 3 b^3)/(a + b)^2
 Of bodies that move by v_1 alone F is that of d_1 and r = -v_1: the implicit Euler rule.
@@ -24,6 +28,7 @@ from typing import Any
 from .compile import inner, kernel
 from .contact import make_normal_velocity
 from .parts import make_forget_history
+from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
 
@@ -39,7 +44,7 @@ SHARP, ROUND_OFF = 1e-3, 1e-14
 
 @inner
 def mean_force(d_0, d_1):
-    """Return G of k = 1, and its derivative by d_1; depths at both ends of a step [m]."""
+    """Return G of k = 1 by Hertz, and its derivative by d_1; depths at both ends of a step [m]."""
     if d_0 >= 0.0 and d_1 >= 0.0:
         a, b = sqrt(d_0), sqrt(d_1)
         both = a + b
@@ -59,11 +64,51 @@ def mean_force(d_0, d_1):
     return 0.0, 0.0
 
 
-def make_push(spec: Spec) -> Any:
+@inner
+def mean_depth(d_0, d_1):
+    """Return G of c = 1 by the linear law, and its derivative by d_1."""
+    if d_0 >= 0.0 and d_1 >= 0.0:
+        return 0.5 * (d_0 + d_1), 0.5
+    if d_1 > 0.0:  # it meets
+        share = d_1 / (d_1 - d_0)
+        return 0.5 * d_1 * share, share * (1.0 - 0.5 * share)
+    if d_0 > 0.0:  # it leaves
+        share = d_0 / (d_0 - d_1)
+        return 0.5 * d_0 * share, 0.5 * share * share
+    return 0.0, 0.0
+
+
+def make_linear_push(spec: Spec) -> Any:
     """Return `kernel(contact, v, params) -> (lambda, s)`, where v_n ends at v [N s], [kg]."""
     mean = step_terms(spec).centred
 
-    def push(contact, v, params):
+    def linear_push(contact, v, params):
+        dt, c, begin = params.dt, contact.spring_compliance, -contact.phi
+        damper = 2.0 * contact.damping_ratio / sqrt(contact.k_n * c)
+        if mean:
+            rate, follows = -0.5 * (contact.spring_v + v), 0.5
+            end = begin + dt * rate
+            depth, steep = mean_depth(begin, end)
+        else:
+            rate, follows = -v, 1.0
+            end = begin + dt * rate
+            depth, steep = max(end, 0.0), 1.0 if end > 0.0 else 0.0
+        impulse = dt * depth / c + damper * (max(end, 0.0) - max(begin, 0.0))
+        slope = dt * steep / c
+        if end > 0.0:
+            slope += damper
+        if impulse < 0.0:  # nothing pulls
+            return 0.0, 0.0
+        return impulse, dt * slope * follows
+
+    return kernel(linear_push, spec)
+
+
+def make_hertz_push(spec: Spec) -> Any:
+    """Return `kernel(contact, v, params) -> (lambda, s)`, where v_n ends at v [N s], [kg]."""
+    mean = step_terms(spec).centred
+
+    def hertz_push(contact, v, params):
         dt, begin = params.dt, -contact.phi
         stiff, dissipation = contact.hertz_stiffness, contact.dissipation
         if mean:
@@ -80,22 +125,48 @@ def make_push(spec: Spec) -> Any:
             change += dissipation * force
         return dt * stiff * force * damped, dt * stiff * change * follows
 
+    return kernel(hertz_push, spec)
+
+
+def make_push(spec: Spec) -> Any:
+    """Return that of the contact's law."""
+    linear = make_linear_push(spec)
+    if not row_terms(spec).curved:
+        return linear
+    hertz = make_hertz_push(spec)
+
+    def push(contact, v, params):
+        if contact.hertz_stiffness > 0.0:
+            return hertz(contact, v, params)
+        return linear(contact, v, params)
+
     return kernel(push, spec)
 
 
 def make_touch(spec: Spec) -> Any:
     """Return `kernel(contact, v, params) -> missed`: its row is the tangent where v_n ends at v.
 
-    missed: what its impulse is off the law, as a change of velocity [m/s].
+    missed: what its impulse, or that of its row so far, is off the law, as a velocity [m/s].
     """
-    push = make_push(spec)
+    push, curved = make_push(spec), row_terms(spec).curved
 
     def touch(contact, v, params):
         impulse, slope = push(contact, v, params)
-        contact.gamma = 1.0 / max(slope, FLATTEST / contact.k_n)
+        flattest = FLATTEST / contact.k_n
+        linear = True
+        if curved:
+            linear = contact.hertz_stiffness == 0.0
+        found = contact.lambda_n
+        if linear:
+            # What solves leave is theirs: the law is missed where it leaves its last tangent.
+            if contact.gamma > 0.0:
+                found = max(-(v + contact.target) / contact.gamma, 0.0)
+            # What is softer is so wherever it is pressed.
+            flattest = min(flattest, 0.25 * params.dt * params.dt / contact.spring_compliance)
+        contact.gamma = 1.0 / max(slope, flattest)
         contact.target = -v - contact.gamma * impulse
         contact.inv_k = 1.0 / (contact.k_n + contact.gamma)
-        return contact.k_n * contact.gamma * contact.inv_k * abs(contact.lambda_n - impulse)
+        return contact.k_n * contact.gamma * contact.inv_k * abs(found - impulse)
 
     return kernel(touch, spec)
 
@@ -104,7 +175,7 @@ def make_linearise(spec: Spec) -> Any:
     """Return `kernel(contacts, count, velocities, params) -> (missed, speed)` [m/s].
 
     Rows become tangents at these velocities. missed: the most that one was off its law; speed: the
-    largest along a normal of those that are not linear.
+    largest along their normals.
     """
     normal_velocity, touch = make_normal_velocity(spec), make_touch(spec)
 
@@ -112,7 +183,7 @@ def make_linearise(spec: Spec) -> Any:
         missed, speed = 0.0, 0.0
         for c in range(count):
             contact = contacts[c]
-            if contact.hertz_stiffness > 0.0:
+            if contact.spring_compliance > 0.0:
                 v = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
                 off = touch(contact, v, params)
                 if off > missed or off != off:  # a NaN wins and stays
@@ -125,10 +196,15 @@ def make_linearise(spec: Spec) -> Any:
 
 def make_stored(spec: Spec) -> Any:
     """Return `kernel(contact, depth) -> U` [J]."""
+    curved = row_terms(spec).curved
 
     def stored(contact, depth):
         d = max(depth, 0.0)
-        return 0.4 * contact.hertz_stiffness * d * d * sqrt(d)
+        energy = 0.5 * d * d / contact.spring_compliance
+        if curved:
+            if contact.hertz_stiffness > 0.0:
+                energy = 0.4 * contact.hertz_stiffness * d * d * sqrt(d)
+        return energy
 
     return kernel(stored, spec)
 
@@ -152,6 +228,8 @@ def make_solve_by_tangents(spec: Spec, solve: Any) -> Any:
             if sharp or (missed <= tolerance and missed > 0.5 * last):
                 found = True
                 break
+            if counters.not_converged == 1 and missed > 0.5 * last:
+                break  # what solves leave, tangents do not take off
             last = missed
         counters.sweeps = sweeps
         if not found:
