@@ -26,6 +26,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.spec import Spec
 from lavendersim.experiment import load_experiment, load_experiment_text
 from lavendersim.experiment.cell import Cell
@@ -118,6 +119,7 @@ FAMILIES = (
     # The engine with everything, which the fuzz compiles.
     Family(
         ("hard/found/cohesion_of_what_turns", "hard/found/springs_beside_what_gives_way"),
+        shape_pairs=tuple(name for name in SHAPE_PAIRS if "ellipsoid" in name),
         effects=(
             *("anisotropic_friction", "contact_patch", "joint", "joint_stop", "motor"),
             *("tangential_restitution", "velocity_log"),

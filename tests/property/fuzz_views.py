@@ -24,9 +24,9 @@ UNITS = {
     "timestep": (0, 1), "smallest_timestep": (0, 1), "sleep_time": (0, 1),
     "frequency": (0, -1), "rate": (0, -1), "damping": (0, -1), "linear": (0, -1),
     "stiffness": (0, -2), "compliance": (0, 2), "quadratic": (-1, 0), "angular": (2, -1),
-    "radius": (1, 0), "length": (1, 0), "size": (1, 0), "points": (1, 0), "position": (1, 0),
-    "offset": (1, 0), "centre": (1, 0), "inertia": (2, 0), "rest_length": (1, 0),
-    "point_a": (1, 0), "point_b": (1, 0), "point": (1, 0), "through": (1, 0),
+    "radius": (1, 0), "length": (1, 0), "size": (1, 0), "semi_axes": (1, 0), "points": (1, 0),
+    "position": (1, 0), "offset": (1, 0), "centre": (1, 0), "inertia": (2, 0),
+    "rest_length": (1, 0), "point_a": (1, 0), "point_b": (1, 0), "point": (1, 0), "through": (1, 0),
     "displacement": (1, 0), "teleport": (1, 0), "slop": (1, 0), "cache_distance": (1, 0),
     "torsional_friction": (1, 0), "rolling_friction": (1, 0),
     "velocity": (1, -1), "surface_velocity": (1, -1), "stribeck_velocity": (1, -1),
@@ -235,6 +235,8 @@ def _reach(shape: Tree) -> float:
         return float(np.linalg.norm(shape["points"], axis=1).max())
     if shape["kind"] == "box":
         return 0.5 * float(np.linalg.norm(shape["size"]))
+    if shape["kind"] == "ellipsoid":
+        return float(max(shape["semi_axes"]))
     return float(shape["radius"] + 0.5 * shape.get("length", 0.0))
 
 

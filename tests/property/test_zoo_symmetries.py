@@ -231,7 +231,7 @@ def test_a_world_in_a_mirror_moves_as_its_image(kinds, most, known, floor, data)
     np.testing.assert_allclose(image[:, 3:], TURNED * plain[:, 3:], atol=known / 0.1)
 
 
-LENGTHS = ("radius", "length", "size", "points", "position", "offset")  # keys of shapes [m]
+LENGTHS = ("radius", "length", "size", "semi_axes", "points", "position", "offset")  # of shapes [m]
 
 
 def scaled(value: Any, factor: float) -> Any:

@@ -24,6 +24,12 @@ class Ellipsoid(Primitive):
         description="[m] from the centre to the surface along the body's x, y, z"
     )
 
+    @property
+    def size(self) -> Vector3:
+        """Return the edges of the box that it just fits, along the body's x, y, z [m]."""
+        a, b, c = self.semi_axes
+        return (2.0 * a, 2.0 * b, 2.0 * c)
+
     def bounding_radius(self) -> float:
         """Return the longest semi-axis [m]."""
         return max(self.semi_axes)

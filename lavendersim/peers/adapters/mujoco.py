@@ -53,10 +53,8 @@ class World:
             corners = _text(number for point in shape.points for number in point)
             meshes.append(f'<mesh name="{name}" vertex="{corners}" inertia="convex"/>')
             form = f'type="mesh" mesh="{name}"'
-        elif shape.kind == "ellipsoid":
-            form = f'type="ellipsoid" size="{_text(shape.semi_axes)}"'
         else:
-            edges = shape.size if shape.kind == "box" else (2.0 * shape.radius,)
+            edges = shape.size if hasattr(shape, "size") else (2.0 * shape.radius,)
             edges += (shape.length,) if shape.kind in ("capsule", "cylinder") else ()
             form = f'type="{shape.kind}" size="{_text(0.5 * edge for edge in edges)}"'
         return f'<geom name="{name}" {form} {place} {rest}/>'

@@ -47,3 +47,9 @@ duration: 1
 """
     with pytest.raises(LavenderError, match=r"a\.yaml:4:\d+: .*semi_axes"):
         load_experiment_text(text, "a.yaml")
+
+
+def test_it_just_fits_the_box_of_its_size() -> None:
+    found = Ellipsoid(kind="ellipsoid", semi_axes=(0.2, 0.5, 0.3))
+    for axis, edge in zip(np.eye(3), found.size, strict=True):
+        assert found.extent(tuple(axis)) == 0.5 * edge
