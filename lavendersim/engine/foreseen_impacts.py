@@ -93,12 +93,12 @@ def make_foresee(spec: Spec) -> Any:
         soft = False
         if compliance:
             soft = pair.compliance > 0.0
+        lasts = soft  # its impulse takes time: none at an instant
         if springs:
             # Its law reckons with what is left of a gap. A part that began where it is met would be
             # the same of a substep whole and in halves, and have no error that is estimated.
-            if takes_time(contact, pair, bodies, params):
-                return False
-        elif soft:  # its impulse takes time: none at an instant
+            lasts = takes_time(contact, pair, bodies, params)
+        if lasts:
             return False
         v = contact.rate
         if contact.phi <= TOUCHING and abs(v) <= CREEP:

@@ -60,6 +60,7 @@ class Cut(ast.NodeTransformer):
         self.branches = 0
 
     def visit_Assign(self, node: ast.Assign) -> ast.AST | list[ast.AST]:
+        self.generic_visit(node)
         if len(node.targets) > 1:
             return node
         (target,) = node.targets
@@ -71,6 +72,12 @@ class Cut(ast.NodeTransformer):
         self.flags |= {name.id for name in flags}
         left = [ast.Assign([name], value) for name, value in pairs if name not in flags]
         return node if not flags else [ast.copy_location(one, node) for one in left]
+
+    def visit_IfExp(self, node: ast.IfExp) -> ast.AST:
+        """Take out what a maker makes for such branches alone: `make(spec) if flag else None`."""
+        self.generic_visit(node)
+        by_flag = isinstance(node.test, ast.Name) and node.test.id in self.flags
+        return node.orelse if by_flag else node
 
     def visit_If(self, node: ast.If) -> ast.AST | None:
         if isinstance(node.test, ast.Name) and node.test.id in self.flags:
