@@ -148,12 +148,12 @@ def send_scene(
     since: int = 0,
 ) -> None:
     """Send what changes in the scene: poses, connections, contacts, and what is removed."""
-    times = time_in_nanoseconds(trace).astype("timedelta64[ns]")
-    _send_poses(stream, trace, times, layer, since)
-    send_connections(stream, trace, layer, since)
+    nanoseconds = time_in_nanoseconds(trace)
+    _send_poses(stream, trace, nanoseconds.astype("timedelta64[ns]"), layer, since)
+    send_connections(stream, trace, nanoseconds, layer, since)
     if scale is not None:
         _send_contacts(stream, trace, room, scale, layer, since)
-    clear_removed(stream, trace, time_in_nanoseconds(trace), [BODIES, GRIDS], layer)
+    clear_removed(stream, trace, nanoseconds, [BODIES, GRIDS], layer)
 
 
 def _send_poses(

@@ -107,13 +107,21 @@ def corners_of(line: DrawnLine, trace: Trace, rows: npt.NDArray[np.int64]) -> Fl
     return np.stack(corners, axis=1)
 
 
-def send_connections(stream: rr.RecordingStream, trace: Trace, layer: Layer, since: int) -> None:
-    """Send the lines of all connections of what moves; since: the first row of the log."""
+def send_connections(
+    stream: rr.RecordingStream,
+    trace: Trace,
+    times: npt.NDArray[np.int64],
+    layer: Layer,
+    since: int,
+) -> None:
+    """Send the lines of all connections of what moves.
+
+    times: of the log's rows [ns]; since: the first of them that is sent.
+    """
     scene = trace.config.scene
     lines = [one for one in lines_of(scene) if any(is_movable(scene.bodies[n]) for n in one.bodies)]
     if not lines:
         return
-    times = np.asarray(trace.step["time_ns"], dtype=np.int64)
     recorded, pose = trace.recorded_pose
     # A diverged run's last rows may hold NaN, which no viewer can place.
     rows = np.flatnonzero(np.isfinite(pose).all(axis=(1, 2)) & (recorded >= since))
