@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -28,7 +28,9 @@ ROWS = {
 
 
 def plan(
-    config: Annotated[Path, typer.Argument(help="Config file.")],
+    configs: Annotated[
+        list[Path], typer.Argument(help="Config files, or folders of them.", show_default=False)
+    ],
     values: Set = None,
     axes: Sweep = None,
     strict: Strict = False,
@@ -38,32 +40,63 @@ def plan(
 
     For a sweep the plan is the union over its cells, and names the cells that require each. Cells
     that differ in a choice between laws, such as the solver, share no union: one plan each.
+    As JSON one config is an object, several are a list of them.
     """
-    from lavendersim.peers.catalogue import LAVENDER, facts_of
     from lavendersim.runner import load_all
+
+    experiments = load_all(configs, overrides=overrides_of(values, axes), strict=strict)
+    if as_json:
+        documents = [_document(each, *_planned(each)) for each in experiments]
+        printing.as_json(documents[0] if len(documents) == 1 else documents)
+        return
+    for number, each in enumerate(experiments):
+        if number:
+            typer.echo()
+        _print(each, *_planned(each))
+
+
+def _planned(experiment: Experiment) -> tuple[list[Explanation], list[str], list[int]]:
+    """Return the plans of an experiment, its engines that plan by themselves, sizes of logs."""
+    from lavendersim.peers.catalogue import LAVENDER
     from lavendersim.runner.log_size import expected_log_sizes
     from lavendersim.runner.plans import distinct, shared_plans
     from lavendersim.scene.explanation import explain_all
 
-    (experiment,) = load_all([config], overrides=overrides_of(values, axes), strict=strict)
     cells = experiment.cells()
     plans = shared_plans(cells)
     every = distinct(plans)
     own = [one for one in every if one.engine == LAVENDER]
     others = [one.engine for one in every if one.engine != LAVENDER]
-    explained = explain_all(own) if own else []
     sizes = expected_log_sizes(cells, plans, experiment.text)
-    if as_json:
-        tables = [one.as_data() for one in explained]
-        numbers = [
-            {"path": one.path, "number": one.number, "formula": one.text, "place": one.mark[:2]}
-            for one in experiment.numbers()
-        ]
-        first = tables[0] if tables else {}
-        document = {**first, "others": tables[1:], "expected_log_sizes": sizes}
-        document |= {"engines": [facts_of(name) for name in others]} if others else {}
-        printing.as_json(document | ({"formulas": numbers} if numbers else {}))
-        return
+    return explain_all(own) if own else [], others, sizes
+
+
+def _document(
+    experiment: Experiment, explained: list[Explanation], others: list[str], sizes: list[int]
+) -> dict[str, Any]:
+    from lavendersim.peers.catalogue import facts_of
+
+    tables = [one.as_data() for one in explained]
+    numbers = [
+        {"path": one.path, "number": one.number, "formula": one.text, "place": one.mark[:2]}
+        for one in experiment.numbers()
+    ]
+    first = tables[0] if tables else {}
+    document = {
+        "experiment": experiment.name,
+        **first,
+        "others": tables[1:],
+        "expected_log_sizes": sizes,
+    }
+    document |= {"engines": [facts_of(name) for name in others]} if others else {}
+    return document | ({"formulas": numbers} if numbers else {})
+
+
+def _print(
+    experiment: Experiment, explained: list[Explanation], others: list[str], sizes: list[int]
+) -> None:
+    from lavendersim.peers.catalogue import facts_of
+
     for one in explained:
         write(one, f"{experiment.name}: {one.title}")
     for name in others:
@@ -72,7 +105,7 @@ def plan(
             typer.echo(f"  {what:<10} {said}")
     for line in number_lines(experiment):
         typer.echo(line)
-    for line in size_lines(sizes, [cell.label for cell in cells]):
+    for line in size_lines(sizes, [cell.label for cell in experiment.cells()]):
         typer.echo(line)
 
 
