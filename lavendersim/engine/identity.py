@@ -19,6 +19,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numba.core import types
 
+from .field_places import composed_name
+
 OURS = __name__.partition(".")[0]
 STORE_BY_INDEX = dis.opmap["STORE_SUBSCR"]
 
@@ -174,28 +176,33 @@ def _of_value(value: Any) -> str:
     raise UnidentifiableError(f"{value!r} is no constant")
 
 
-def seen_of(arguments: tuple[Any, ...], of: Identity) -> str:
-    """Return a text of the types of arguments: all that a kernel of that identity sees of them."""
-    return " ".join(_seen(kind, of) for kind in arguments)
+def seen_of(arguments: tuple[Any, ...], of: Identity, *, places: bool = True) -> str:
+    """Return a text of the types of arguments: all that a kernel of that identity sees of them.
+
+    places: whether it sees where fields of composed records lie (`field_places`).
+    """
+    return " ".join(_seen(kind, of, places) for kind in arguments)
 
 
-def _seen(kind: Any, of: Identity) -> str:
+def _seen(kind: Any, of: Identity, places: bool) -> str:
     if isinstance(kind, types.Record):
+        composed = "" if places else composed_name(kind)
         fields = [
-            f"{name}@{field.offset}:{_seen(field.type, of)}"
+            f"{name}@{composed or field.offset}:{_seen(field.type, of, places)}"
             for name, field in kind.fields.items()
             if name in of.names
         ]
-        size = kind.size if of.stores else ""
+        size = composed or (kind.size if of.stores else "")
         return f"{{{' '.join(sorted(fields))}}}{size}{'' if kind.aligned else 'unaligned'}"
     if isinstance(kind, types.Array):
-        item = _seen(kind.dtype, of)
-        size = kind.dtype.size if isinstance(kind.dtype, types.Record) else ""
+        item, record = _seen(kind.dtype, of, places), isinstance(kind.dtype, types.Record)
+        named = record and not places and composed_name(kind.dtype)
+        size = kind.dtype.size if record and not named else ""
         access = kind.ndim, kind.layout, kind.mutable, kind.aligned
         return f"[{item}]{size}{access}"
     if isinstance(kind, types.BaseTuple):
         made_by = getattr(kind, "instance_class", tuple)  # a NamedTuple has its fields' names
-        inside = " ".join(_seen(each, of) for each in _types_in(kind))
+        inside = " ".join(_seen(each, of, places) for each in _types_in(kind))
         named = getattr(made_by, "_fields", ())
         return f"{type(kind).__name__} {made_by.__qualname__}{named}({inside})"
     plain = types.Number, types.Boolean, types.NoneType, types.Literal, types.Omitted

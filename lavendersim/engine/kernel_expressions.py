@@ -15,11 +15,14 @@ from numba.core import cgutils, types
 from numba.core.datamodel.registry import default_manager
 from numba.core.lowering import Lower
 
+from . import field_places
+from .field_places import FIELDS, composed_name
 from .memory_references import are_rows, is_memory, item
 from .range_loops import ITERATOR, RANGE, begun, limits, next_of
 
-INT32 = IntType(32)
-FIELDS = types.float64, types.int64, types.uint64  # that records have
+INT32, WORD = IntType(32), IntType(64)
+INDICES = types.int64, types.uint64
+HANDED_ON = "call", "build_tuple"  # expressions that leave records and arrays as they are
 
 _FLOAT = {
     operator.add: "fadd",
@@ -50,7 +53,16 @@ class ShortExpressions(Lower):
         """Return the value of an expression."""
         short = SHORT.get(expr.op)
         value = short(self, resty, expr) if short else None
+        if value is None and expr.op not in HANDED_ON:
+            self.refuse_records(expr)
         return super().lower_expr(resty, expr) if value is None else value
+
+    def refuse_records(self, what: Any) -> None:
+        """Refuse what numba would compile with the places that fields have in one plan."""
+        for variable in what.list_vars():
+            if self.composed(field_places.record_of(self.typeof(variable.name))):
+                name = self.func_ir.func_id.func_qualname
+                raise NotImplementedError(f"kernel {name}: {what} of a record that plans compose")
 
     def plain(self, name: str) -> Any:
         """Return the type of a variable; that of a constant is the one its values have."""
@@ -79,23 +91,27 @@ class ShortExpressions(Lower):
         compare = self.builder.fcmp_unordered if compared == "!=" else self.builder.fcmp_ordered
         return compare(compared, *operands)
 
+    def composed(self, kind: Any) -> str:
+        """Return the name of a record whose fields lie where the whole kernel tells, or ""."""
+        return "" if self.context.enable_boundscheck else composed_name(kind)
+
     def pointer(self, record: Any, kind: Any, name: str) -> Any:
         """Return where a field of a record is; None where numba must say."""
         field = kind.typeof(name)
         if field not in FIELDS or not kind.aligned:
             return None
-        offset = Constant(INT32, kind.offset(name))
-        at = self.builder.gep(record, (Constant(INT32, 0), offset), inbounds=True)
+        if composed := self.composed(kind):
+            at = field_places.pointer(self.builder, record, composed, name)
+        else:
+            offset = Constant(INT32, kind.offset(name))
+            at = self.builder.gep(record, (Constant(INT32, 0), offset), inbounds=True)
         return self.builder.bitcast(at, self.context.get_data_type(field).as_pointer())
 
     def attribute(self, resty: Any, expr: Any) -> Any:
         """Return a field of a record or a named tuple, or the shape of an array."""
         kind: Any = self.typeof(expr.value.name)
         if isinstance(kind, types.Record):
-            if kind.typeof(expr.attr) != resty:
-                return None
-            at = self.pointer(self.loadvar(expr.value.name), kind, expr.attr)
-            return None if at is None else self.builder.load(at)
+            return self._field(resty, expr.value.name, kind, expr.attr)
         if isinstance(kind, types.BaseNamedTuple):
             fields: Any = getattr(kind, "fields", ())
             return self._part_of(resty, expr, kind, fields.index(expr.attr))
@@ -104,9 +120,20 @@ class ShortExpressions(Lower):
             return self.builder.extract_value(self.loadvar(expr.value.name), place)
         return None
 
+    def _field(self, resty: Any, record: str, kind: Any, name: str) -> Any:
+        if kind.typeof(name) != resty:
+            return None
+        at = self.pointer(self.loadvar(record), kind, name)
+        return None if at is None else self.builder.load(at)
+
     def static_item(self, resty: Any, expr: Any) -> Any:
-        """Return an item of a tuple."""
+        """Return an item of a tuple, a field of a record by its text, or a row by a constant."""
         kind, index = self.typeof(expr.value.name), expr.index
+        if isinstance(kind, types.Record) and isinstance(index, str):
+            return self._field(resty, expr.value.name, kind, index)
+        if isinstance(index, int) and self._has_row(resty, kind):
+            at = Constant(WORD, index)
+            return self._value(resty, self.row_at(expr.value.name, at, signed=index < 0))
         if not isinstance(kind, types.BaseTuple) or not isinstance(index, int):
             return None
         return self._part_of(resty, expr, kind, index % len(kind))
@@ -122,21 +149,34 @@ class ShortExpressions(Lower):
     def row(self, resty: Any, expr: Any) -> Any:
         """Return a row of an array, a record or a number; a negative index counts from the end."""
         kind, index = self.typeof(expr.value.name), self.plain(expr.index.name)
-        if not are_rows(kind) or index not in (types.int64, types.uint64) or not kind.aligned:
+        if index not in INDICES or not self._has_row(resty, kind):
             return None
-        if resty != kind.dtype or not isinstance(resty, (types.Record, *map(type, FIELDS))):
-            return None
-        if self.context.enable_boundscheck:
-            return None
-        builder, rows = self.builder, self.loadvar(expr.value.name)
         at = self.loadvar(expr.index.name)
+        row = self.row_at(expr.value.name, at, signed=index == types.int64)
+        return self._value(resty, row)
+
+    def _value(self, kind: Any, row: Any) -> Any:
+        return row if isinstance(kind, types.Record) else self.builder.load(row)
+
+    def _has_row(self, row: Any, kind: Any) -> bool:
+        if not are_rows(kind) or not kind.aligned or row != kind.dtype:
+            return False
+        plain = isinstance(row, (types.Record, *map(type, FIELDS)))
+        return plain and not self.context.enable_boundscheck
+
+    def row_at(self, name: str, at: Any, *, signed: bool) -> Any:
+        """Return where a row of an array is; a signed index may count from the end."""
+        kind: Any = self.typeof(name)
+        builder, rows = self.builder, self.loadvar(name)
         place = self.context.data_model_manager[kind].get_field_position
-        if index == types.int64:
+        if signed:
             count = builder.extract_value(rows, (place("shape"), 0))
             negative = builder.icmp_signed("<", at, Constant(at.type, 0))
             at = builder.select(negative, builder.add(at, count), at)
-        row = builder.gep(builder.extract_value(rows, place("data")), (at,))
-        return row if isinstance(resty, types.Record) else builder.load(row)
+        data = builder.extract_value(rows, place("data"))
+        if composed := self.composed(kind.dtype):
+            return field_places.row(builder, data, composed, at)
+        return builder.gep(data, (at,))
 
     def called(self, resty: Any, expr: Any) -> Any:
         """Return what a part returns, a range, or whether a number is not zero."""

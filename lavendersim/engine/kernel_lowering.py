@@ -11,13 +11,15 @@ from __future__ import annotations
 
 from typing import Any
 
+from llvmlite.ir import Constant
 from numba.core import cgutils, config, ir, types
 from numba.core.compiler_machinery import register_pass
 from numba.core.lowering import Lower
 from numba.core.typed_passes import NativeLowering
 
+from . import field_places
 from .compile_options import OPTIONS
-from .kernel_expressions import ShortExpressions
+from .kernel_expressions import INDICES, WORD, ShortExpressions
 from .memory_references import for_python
 from .range_loops import RANGE
 
@@ -48,8 +50,24 @@ class KernelLower(ShortExpressions):
         elif isinstance(inst, ir.Branch) and self.typeof(inst.cond.name) == types.boolean:
             ways = self.blkmap[inst.truebr], self.blkmap[inst.falsebr]
             self.builder.cbranch(self.loadvar(inst.cond.name), *ways)
-        elif not (isinstance(inst, ir.SetAttr) and self._set_field(inst)):
+        elif not self._stored(inst):
+            if not isinstance(inst, ir.Return):
+                self.refuse_records(inst)
             super().lower_inst(inst)
+
+    def _stored(self, inst: Any) -> bool:
+        """Store what an instruction stores: a field of a record, or a whole record in a row."""
+        if isinstance(inst, ir.SetAttr):
+            return self._set_field(inst, inst.attr)
+        if isinstance(inst, ir.StaticSetItem) and isinstance(inst.index, str):
+            return self._set_field(inst, inst.index)
+        if isinstance(inst, ir.StaticSetItem) and isinstance(inst.index, int):
+            return self._set_row(inst, Constant(WORD, inst.index), signed=inst.index < 0)
+        if isinstance(inst, ir.SetItem):
+            index = self.plain(inst.index.name)
+            at = self.loadvar(inst.index.name) if index in INDICES else None
+            return at is not None and self._set_row(inst, at, signed=index == types.int64)
+        return False
 
     def lower_assign(self, ty: Any, inst: Any) -> Any:
         """Return the value that is assigned."""
@@ -76,14 +94,27 @@ class KernelLower(ShortExpressions):
             _constants[key] = constant
         return constant
 
-    def _set_field(self, inst: Any) -> bool:
-        kind, value = self.typeof(inst.target.name), self.typeof(inst.value.name)
-        if not isinstance(kind, types.Record) or value != kind.typeof(inst.attr):
+    def _set_field(self, inst: Any, name: str) -> bool:
+        kind, given = self.typeof(inst.target.name), self.plain(inst.value.name)
+        if not isinstance(kind, types.Record):
             return False
-        at = self.pointer(self.loadvar(inst.target.name), kind, inst.attr)
+        field = kind.typeof(name)
+        at = self.pointer(self.loadvar(inst.target.name), kind, name)
         if at is None:
             return False
-        self.builder.store(self.loadvar(inst.value.name), at)
+        value = self.loadvar(inst.value.name)
+        if given != field:
+            value = self.context.cast(self.builder, value, given, field)
+        self.builder.store(value, at)
+        return True
+
+    def _set_row(self, inst: Any, at: Any, *, signed: bool) -> bool:
+        kind, value = self.typeof(inst.target.name), self.typeof(inst.value.name)
+        composed = self.composed(value)
+        if not composed or kind.dtype != value:
+            return False
+        row = self.row_at(inst.target.name, at, signed=signed)
+        field_places.copy(self.builder, composed, row, self.loadvar(inst.value.name))
         return True
 
     def storevar(self, value: Any, name: str, argidx: Any = None) -> None:
@@ -108,6 +139,11 @@ def is_direct(context: Any, flags: Any) -> bool:
     """Whether nothing is to be debugged or counted: then `KernelLower` makes the instructions."""
     explained = context.enable_debuginfo or flags.debuginfo or config.DEBUG_JIT  # type: ignore[attr-defined]
     return not (explained or context.enable_nrt)
+
+
+def names_places() -> bool:
+    """Whether parts of this process name the places of fields (`field_places`)."""
+    return are_direct() and not config.BOUNDSCHECK  # type: ignore[attr-defined]
 
 
 def are_direct() -> bool:

@@ -39,11 +39,13 @@ class KernelPart:
         key: str,
         raises: bool,
         *,
+        places: tuple[str, ...] = (),
         separate: bool = False,
     ) -> None:
         self.symbol, self.returns, self.bitcode, self.called = symbol, returns, bitcode, called
         self.key = key  # names the file it is kept in; empty where it has none
         self.raises = raises  # whether it may return with an exception
+        self.places = places  # of fields that its own code reads or writes (`field_places`)
         # Whether it is optimised without its callers; none whose code cannot be kept is.
         self.separate = separate and bool(key) and is_plain(returns)
         self._reload_init: set[Any] = set()
@@ -92,11 +94,14 @@ def separate_in(parts: Iterable[KernelPart]) -> Iterator[KernelPart]:
     yield from (part for part in with_called(parts) if part.separate)
 
 
-def key_of(kernel: Any, arguments: tuple[Any, ...]) -> str:
-    """Return 32 hex digits of what the code of a part depends on; "" where that is not known."""
+def key_of(kernel: Any, arguments: tuple[Any, ...], *, places: bool = True) -> str:
+    """Return 32 hex digits of what a kernel's code depends on; "" where that is not known.
+
+    places: whether on the places of fields in composed records, as a whole kernel's does.
+    """
     try:
         of = identity(kernel)
-        text = f"{build()} {of.digest} {seen_of(arguments, of)}"
+        text = f"{build()} {of.digest} {seen_of(arguments, of, places=places)}"
     except UnidentifiableError:
         return ""
     return hashlib.sha256(text.encode()).hexdigest()[:32]
@@ -137,12 +142,12 @@ class PartStore:
         if kernel_store.directory()[0].name:
             keys = tuple(called.key for called in part.called)
             code = zlib.compress(part.bitcode, 1)
-            stored = part.symbol, part.returns, code, keys, part.raises, part.separate
+            more = part.raises, part.places, part.separate
+            stored = part.symbol, part.returns, code, keys, *more
             kernel_store.write(_path(part.key), pickle.dumps(stored))
 
-    def code(self, part: KernelPart) -> Any:
+    def code(self, key: str) -> Any:
         """Return the object code of a separate part, from this process or from disk, or None."""
-        key = part.key
         if key in self._codes and (key in self._new_codes or not self._anew):
             return self._codes[key]
         kept = kernel_store.directory()[0].name and not self._anew
@@ -152,19 +157,19 @@ class PartStore:
         self._codes[key] = pickle.loads(payload)
         return self._codes[key]
 
-    def keep_code(self, part: KernelPart, code: Any) -> None:
+    def keep_code(self, key: str, code: Any) -> None:
         """Remember the object code of a separate part, here and on disk."""
-        self._codes[part.key] = code
-        self._new_codes.add(part.key)
+        self._codes[key] = code
+        self._new_codes.add(key)
         if kernel_store.directory()[0].name:
-            kernel_store.write(_path(part.key, OBJECT), pickle.dumps(code))
+            kernel_store.write(_path(key, OBJECT), pickle.dumps(code))
 
     def _load(self, key: str) -> KernelPart | None:
         """Return a part from disk with all that it calls; None where any of it is missing."""
         payload = kernel_store.read(_path(key)) if kernel_store.directory()[0].name else None
         if payload is None:
             return None
-        symbol, returns, bitcode, keys, raises, separate = pickle.loads(payload)
+        symbol, returns, bitcode, keys, raises, places, separate = pickle.loads(payload)
         called = []
         for name in keys:
             part = self._parts.get(name) or self._load(name)
@@ -172,7 +177,9 @@ class PartStore:
                 return None
             called.append(part)
         code = zlib.decompress(bitcode)
-        whole = KernelPart(symbol, returns, code, tuple(called), key, raises, separate=separate)
+        whole = KernelPart(
+            symbol, returns, code, tuple(called), key, raises, places=places, separate=separate
+        )
         self._parts[key] = whole
         return whole
 

@@ -20,6 +20,8 @@ from numba.core.datamodel.models import ArrayModel, PrimitiveModel
 from numba.core.datamodel.packer import ArgPacker
 from numba.core.datamodel.registry import default_manager
 
+from .field_places import composed_name
+
 BYTES = IntType(8).as_pointer()
 _size: Any = types.intp
 WORD = IntType(_size.bitwidth)  # all that numba's value of an array consists of
@@ -65,9 +67,7 @@ class RowsModel(ArrayModel):
 
     def array(self, builder: Any, data: Any, count: Any) -> Any:
         """Return the array that begins at `data`; all else of it is known."""
-        row = self._fe_type.dtype
-        size = row.size if isinstance(row, types.Record) else row.bitwidth // 8
-        known = {"meminfo": None, "parent": None, "itemsize": size, "strides": [size]}
+        known = {"meminfo": None, "parent": None, **_sizes(self._fe_type.dtype)}
         whole = self.get_value_type()
         fields = zip(self._fields, whole.elements, strict=True)
         array = Constant(whole, [Constant(of, known.get(name, Undefined)) for name, of in fields])
@@ -75,6 +75,13 @@ class RowsModel(ArrayModel):
             place = self.get_field_position(name), *path
             array = builder.insert_value(array, count, place)
         return builder.insert_value(array, data, self.get_field_position("data"))
+
+
+def _sizes(row: Any) -> dict[str, Any]:
+    if composed_name(row):
+        return {}  # those of a plan; nobody asks for them (`KernelLower.refuse_records`)
+    size = row.size if isinstance(row, types.Record) else row.bitwidth // 8
+    return {"itemsize": size, "strides": [size]}
 
 
 def are_rows(kind: Any) -> bool:

@@ -31,7 +31,8 @@ from numba.core.typed_passes import NativeLowering
 from numba.core.typing.templates import make_concrete_template, signature
 
 from .compiler_shortcuts import packer_of, quick, shortened
-from .kernel_lowering import KernelLowering, is_direct
+from .field_places import composed_in, places_in
+from .kernel_lowering import KernelLowering, is_direct, names_places
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of
 from .memory_references import REFERENCES, are_rows
 from .separate_code import merge, optimise, separate_code
@@ -81,6 +82,7 @@ class PartCode(_Linking):
             for function in ir_module.functions
             for block in function.blocks
         )
+        self.places = places_in(ir_module)
         module = parse_assembly(str(ir_module))
         module.name, module.data_layout = ir_module.name, self._codegen._data_layout
         passes = create_new_function_pass_manager()
@@ -103,16 +105,19 @@ class PartCode(_Linking):
                 function.linkage = Linkage.internal
         bitcode = module.as_bitcode()
         called = tuple(self.parts)
-        return KernelPart(symbol, returns, bitcode, called, key, self.raises, separate=separate)
+        more = {"places": self.places, "separate": separate}
+        return KernelPart(symbol, returns, bitcode, called, key, self.raises, **more)
 
 
 class KernelObject(_Linking):
     """Code of a kernel that Python calls, with all its parts."""
 
+    records: dict[str, Any]  # that its plan composed, by name
+
     def finalize(self) -> None:
         """Link every part, directly called or not, once; call separate ones where they are."""
-        self.separate = separate_code(self.parts, self._codegen)
-        self._symbols = merge(self._final_module, self.parts, self._codegen)
+        self.separate = separate_code(self.parts, self.records, self._codegen)
+        self._symbols = merge(self._final_module, self.parts, self.records, self._codegen)
         super().finalize()
 
     def _optimize_final_module(self) -> None:
@@ -229,7 +234,7 @@ class _KernelCompiler(Compiler):
     def __init__(
         self, function, symbol, typingctx, targetctx, library, args, return_type, flags, locals
     ):
-        code = self.code(targetctx.codegen(), flags)
+        code = self.code(targetctx.codegen(), flags, args)
         # What numba has learned to compile is asked once, by the kernel that Python calls.
         typing, target = copy(typingctx), copy(targetctx)
         typing.refresh = target.refresh = _nothing
@@ -242,7 +247,7 @@ class _KernelCompiler(Compiler):
         """Return the one pipeline there is."""
         return [_pipeline(self.state)]
 
-    def code(self, codegen, flags):
+    def code(self, codegen, flags, args):
         """Return the library that the code goes to."""
         raise NotImplementedError
 
@@ -250,7 +255,7 @@ class _KernelCompiler(Compiler):
 class PartCompiler(_KernelCompiler):
     """For a kernel that only kernels call."""
 
-    def code(self, codegen, flags):
+    def code(self, codegen, flags, args):
         """Return a library that is linked into others."""
         flags.no_compile = flags.no_cpython_wrapper = True
         return PartCode(codegen, "part")
@@ -259,9 +264,10 @@ class PartCompiler(_KernelCompiler):
 class ObjectCompiler(_KernelCompiler):
     """For a kernel that Python calls; its code can be kept on disk."""
 
-    def code(self, codegen, flags):
+    def code(self, codegen, flags, args):
         """Return a library that links all that it calls."""
         whole = KernelObject(codegen, "whole")
+        whole.records = composed_in(args)
         whole.enable_object_caching()
         return whole
 
@@ -306,7 +312,7 @@ class Kernel(CPUDispatcher):
 
     def _link(self, args: tuple[Any, ...]) -> Linked:
         """Let kernels call this one, by a part that was there or is compiled now."""
-        key = key_of(self, args)
+        key = key_of(self, args, places=not names_places())
         part = STORE.find(key)
         if part is None:
             part = self._compiled(key, args)

@@ -15,7 +15,7 @@ the same code in a cache of any state.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from llvmlite.binding import (
@@ -27,9 +27,11 @@ from llvmlite.binding import (
 )
 from numba.core import config
 
-from .kernel_parts import STORE, KernelPart, merged_into, separate_in
+from .field_places import PREFIX, digest, told
+from .kernel_parts import STORE, KernelPart, merged_into, separate_in, with_called
 
-ENTRY = ".separate"  # behind a part's symbol: that of its object
+# Behind the symbol of a part, with digits of the places of fields: the symbol of its object.
+ENTRY = ".separate."
 NAME = re.compile(r'%(?:[-\w.$]+|"[^"]*")')  # of a value in LLVM's text
 # LLVM's first level takes two thirds of the time of its third, and kernels are as fast, as far as
 # a busy machine shows: a stack of six and 216 balls within 3 %, 216 boxes within 1 to 9 %.
@@ -52,26 +54,35 @@ def optimise(module: Any, parts: set[str], codegen: Any) -> None:
     passes.run(module, builder)
 
 
-def merge(module: Any, parts: Iterable[KernelPart], codegen: Any) -> set[str]:
+def merge(
+    module: Any, parts: Iterable[KernelPart], records: Mapping[str, Any], codegen: Any
+) -> set[str]:
     """Link parts, directly called or not, once each into a module; return their symbols.
 
     Of a separate part, which is called from elsewhere, only what calls it is linked.
+    records: that the plan composed, by name; they tell the places of fields.
     """
     symbols = set()
     for part in merged_into(parts):
         symbols.add(part.symbol)
         if part.separate:
-            text = _separate(part, codegen).adapter(part.symbol, inward=False)
+            text = _separate(part, records, codegen).adapter(part.symbol, inward=False)
             linked = parse_assembly(text)
         else:
             linked = parse_bitcode(part.bitcode)
         module.link_in(linked)
+    places = [each.name for each in module.global_variables if each.name.startswith(PREFIX)]
+    module.link_in(parse_assembly(told(places, records)))
+    for place in module.global_variables:
+        if place.name.startswith(PREFIX):
+            place.linkage = Linkage.internal
     return symbols
 
 
 class SeparateCode(NamedTuple):
     """A separate part as an object, which is called by those of its arguments that it reads."""
 
+    entry: str  # its symbol
     types: tuple[str, ...]  # LLVM's, of all arguments
     read: tuple[int, ...]  # places of those that the object takes
     code: bytes
@@ -89,10 +100,10 @@ class SeparateCode(NamedTuple):
                 value if place in self.read else f"{kind} poison"
                 for place, (kind, value) in enumerate(zip(self.types, values, strict=True))
             ]
-            outer, inner = (handed, f"{symbol}{ENTRY}"), (", ".join(given), symbol)
+            outer, inner = (handed, self.entry), (", ".join(given), symbol)
             types = self.types
         else:
-            outer, inner = (", ".join(values), symbol), (handed, f"{symbol}{ENTRY}")
+            outer, inner = (", ".join(values), symbol), (handed, self.entry)
             types = tuple(self.types[place] for place in self.read)
         return (
             f'declare i32 @"{inner[1]}"({", ".join(types)})\n'
@@ -106,18 +117,21 @@ def _argument_names(function: Any) -> list[str]:
     return [NAME.findall(str(argument))[-1] for argument in function.arguments]
 
 
-def _compiled(part: KernelPart, codegen: Any) -> SeparateCode:
+def _compiled(
+    part: KernelPart, entry: str, records: Mapping[str, Any], codegen: Any
+) -> SeparateCode:
     """Return the code of a part with all that it calls, but for separate parts."""
     module = parse_bitcode(part.bitcode)
     module.name, module.data_layout = part.symbol, codegen._data_layout
-    optimise(module, merge(module, part.called, codegen) - {part.symbol}, codegen)
+    merged = merge(module, part.called, records, codegen)
+    optimise(module, merged - {part.symbol}, codegen)
     function = module.get_function(part.symbol)
     names = _argument_names(function)
     body = str(function).split("{", 1)[1]
     found = set(NAME.findall(body))
     types = tuple(str(argument.type) for argument in function.arguments)
     read = tuple(place for place, name in enumerate(names) if name in found)
-    made = SeparateCode(types, read, b"")
+    made = SeparateCode(entry, types, read, b"")
     module.link_in(parse_assembly(made.adapter(part.symbol, inward=True)))
     function = module.get_function(part.symbol)
     function.linkage = Linkage.internal
@@ -130,19 +144,25 @@ def _compiled(part: KernelPart, codegen: Any) -> SeparateCode:
     return made._replace(code=codegen._tm.emit_object(module))
 
 
-def _separate(part: KernelPart, codegen: Any) -> SeparateCode:
-    found: SeparateCode | None = STORE.code(part)
+def _separate(part: KernelPart, records: Mapping[str, Any], codegen: Any) -> SeparateCode:
+    """Return the code of a separate part, optimised for the places of fields that it touches."""
+    places = digest({place for each in with_called([part]) for place in each.places}, records)
+    key = f"{part.key}-{places}"
+    found: SeparateCode | None = STORE.code(key)
     if found is None:
-        found = _compiled(part, codegen)
-        STORE.keep_code(part, found)
+        found = _compiled(part, f"{part.symbol}{ENTRY}{places}", records, codegen)
+        STORE.keep_code(key, found)
     return found
 
 
-def separate_code(parts: Iterable[KernelPart], codegen: Any) -> dict[str, bytes]:
+def separate_code(
+    parts: Iterable[KernelPart], records: Mapping[str, Any], codegen: Any
+) -> dict[str, bytes]:
     """Return the object code of every separate part that parts call, by symbol; load it, too."""
-    found = {part.symbol: _separate(part, codegen).code for part in separate_in(parts)}
-    load(found, codegen)
-    return found
+    found = [_separate(part, records, codegen) for part in separate_in(parts)]
+    objects = {each.entry: each.code for each in found}
+    load(objects, codegen)
+    return objects
 
 
 def load(objects: dict[str, bytes], codegen: Any) -> None:

@@ -111,26 +111,26 @@ def test_anew_nothing_is_taken_that_was_there_before(kept: Path) -> None:
     old, new = part("old", key="a" * 32), part("new", key="c" * 32)
     store = PartStore()
     store.keep(old)
-    store.keep_code(old, "old code")
+    store.keep_code(old.key, "old code")
     store.begin(anew=True)
     assert store.find(old.key) is None
-    assert store.code(old) is None
+    assert store.code(old.key) is None
     store.keep(new)
-    store.keep_code(new, "new code")
+    store.keep_code(new.key, "new code")
     assert store.find(new.key) is new
-    assert store.code(new) == "new code"
+    assert store.code(new.key) == "new code"
     assert store.alone
     store.begin(anew=False)
     assert store.find(old.key) is old
-    assert store.code(old) == "old code"
+    assert store.code(old.key) == "old code"
 
 
 def test_object_code_is_kept_beside_its_part(kept: Path) -> None:
     one = part("one", key="a" * 32)
-    PartStore().keep_code(one, {"code": 3})
-    assert PartStore().code(one) == {"code": 3}
+    PartStore().keep_code(one.key, {"code": 3})
+    assert PartStore().code(one.key) == {"code": 3}
     assert [path.suffix for path in kept.iterdir()] == [OBJECT]
-    assert PartStore().code(part("two", key="b" * 32)) is None
+    assert PartStore().code("b" * 32) is None
 
 
 def test_a_part_without_a_key_is_nowhere(kept: Path) -> None:
@@ -146,8 +146,8 @@ def test_without_a_directory_parts_are_kept_in_the_process(
     monkeypatch.setattr(kernel_parts.kernel_store, "directory", lambda: (Path(), None))
     one, store = part("one", key="a" * 32), PartStore()
     store.keep(one)
-    store.keep_code(one, 5)
-    assert (store.find(one.key), store.code(one)) == (one, 5)
+    store.keep_code(one.key, 5)
+    assert (store.find(one.key), store.code(one.key)) == (one, 5)
     assert PartStore().find(one.key) is None
     assert list(kept.iterdir()) == []
 

@@ -55,9 +55,9 @@ def optimised(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     found: list[str] = []
     whole = separate_code._compiled
 
-    def noted(part: Any, codegen: Any) -> Any:
+    def noted(part: Any, *other: Any) -> Any:
         found.append(part.symbol)
-        return whole(part, codegen)
+        return whole(part, *other)
 
     monkeypatch.setattr(separate_code, "_compiled", noted)
     for table in ("_parts", "_codes"):
@@ -88,8 +88,7 @@ def test_it_is_optimised_once_for_all_its_callers(optimised):
 def test_only_arguments_that_it_reads_are_handed_over(optimised):
     alone = apart(sum_up)
     run(make_caller(alone))
-    [part] = parts_of(alone)
-    code = STORE.code(part)
+    [code] = STORE._codes.values()
     # Where the value returned goes; of the rows their address and their count; the scale. There are
     # an address for exceptions and another array, too.
     assert len(code.types) == 2 + 2 + 2 + 1
