@@ -1,4 +1,4 @@
-"""Where fields of records lie that each plan lays out anew: named by parts, told by whole kernels.
+"""Where fields of records lie that each plan lays out anew: named by parts, given by whole kernels.
 
     part            reads the field at  contact + @".place.contact.nx"
     whole kernel    @".place.contact.nx" = 24, of the plan that it is compiled for
@@ -90,7 +90,7 @@ def _records_in(kinds: Iterable[Any]) -> Iterator[Any]:
 
 
 def place(builder: Any, name: str, field: str) -> Any:
-    """Return where a field of a composed record lies [byte], as the whole kernel tells."""
+    """Return where a field of a composed record lies [byte], as the whole kernel gives it."""
     symbol = f"{PREFIX}{name}.{field}"
     known = builder.module.globals.get(symbol)
     if known is None:
@@ -132,12 +132,12 @@ def _number(symbol: str, records: Mapping[str, Any]) -> int:
     return int(record.size if field == ROW else record.offset(field))
 
 
-def told(symbols: Iterable[str], records: Mapping[str, Any]) -> str:
-    """Return LLVM's text that tells these places in a plan's records."""
+def definitions(symbols: Iterable[str], records: Mapping[str, Any]) -> str:
+    """Return LLVM's text that gives these places their numbers in a plan's records."""
     lines = (f'@"{symbol}" = constant i64 {_number(symbol, records)}' for symbol in symbols)
     return "\n".join(lines)
 
 
 def digest(symbols: Iterable[str], records: Mapping[str, Any]) -> str:
     """Return 16 hex digits of where these places are in a plan's records."""
-    return hashlib.sha256(told(sorted(symbols), records).encode()).hexdigest()[:16]
+    return hashlib.sha256(definitions(sorted(symbols), records).encode()).hexdigest()[:16]

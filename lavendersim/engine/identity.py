@@ -196,8 +196,8 @@ def _seen(kind: Any, of: Identity, places: bool) -> str:
         return f"{{{' '.join(sorted(fields))}}}{size}{'' if kind.aligned else 'unaligned'}"
     if isinstance(kind, types.Array):
         item, record = _seen(kind.dtype, of, places), isinstance(kind.dtype, types.Record)
-        named = record and not places and composed_name(kind.dtype)
-        size = kind.dtype.size if record and not named else ""
+        composed = "" if places else composed_name(kind.dtype)
+        size = kind.dtype.size if record and not composed else ""
         access = kind.ndim, kind.layout, kind.mutable, kind.aligned
         return f"[{item}]{size}{access}"
     if isinstance(kind, types.BaseTuple):

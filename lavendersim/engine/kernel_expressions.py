@@ -92,7 +92,7 @@ class ShortExpressions(Lower):
         return compare(compared, *operands)
 
     def composed(self, kind: Any) -> str:
-        """Return the name of a record whose fields lie where the whole kernel tells, or ""."""
+        """Return the name of a record whose fields lie where the whole kernel says, or ""."""
         return "" if self.context.enable_boundscheck else composed_name(kind)
 
     def pointer(self, record: Any, kind: Any, name: str) -> Any:

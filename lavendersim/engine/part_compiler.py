@@ -105,8 +105,10 @@ class PartCode(_Linking):
                 function.linkage = Linkage.internal
         bitcode = module.as_bitcode()
         called = tuple(self.parts)
-        more = {"places": self.places, "separate": separate}
-        return KernelPart(symbol, returns, bitcode, called, key, self.raises, **more)
+        places = self.places
+        return KernelPart(
+            symbol, returns, bitcode, called, key, self.raises, places=places, separate=separate
+        )
 
 
 class KernelObject(_Linking):

@@ -27,7 +27,7 @@ from llvmlite.binding import (
 )
 from numba.core import config
 
-from .field_places import PREFIX, digest, told
+from .field_places import PREFIX, definitions, digest
 from .kernel_parts import STORE, KernelPart, merged_into, separate_in, with_called
 
 # Behind the symbol of a part, with digits of the places of fields: the symbol of its object.
@@ -60,7 +60,7 @@ def merge(
     """Link parts, directly called or not, once each into a module; return their symbols.
 
     Of a separate part, which is called from elsewhere, only what calls it is linked.
-    records: that the plan composed, by name; they tell the places of fields.
+    records: that the plan composed, by name; they give the places of fields.
     """
     symbols = set()
     for part in merged_into(parts):
@@ -72,7 +72,7 @@ def merge(
             linked = parse_bitcode(part.bitcode)
         module.link_in(linked)
     places = [each.name for each in module.global_variables if each.name.startswith(PREFIX)]
-    module.link_in(parse_assembly(told(places, records)))
+    module.link_in(parse_assembly(definitions(places, records)))
     for place in module.global_variables:
         if place.name.startswith(PREFIX):
             place.linkage = Linkage.internal

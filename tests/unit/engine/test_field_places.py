@@ -1,4 +1,4 @@
-"""Parts name the places of fields; each whole kernel tells those of its plan (`field_places`)."""
+"""Parts name the places of fields; each whole kernel gives those of its plan (`field_places`)."""
 
 from __future__ import annotations
 
