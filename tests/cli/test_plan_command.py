@@ -98,10 +98,10 @@ def test_json_has_all_that_the_table_has(drop: Path, tmp_path: Path) -> None:
 def test_a_folder_gives_the_plan_of_each_config(drop: Path, tmp_path: Path) -> None:
     later = drop.read_text().replace(f"name: {drop.stem}", "name: later")
     (drop.parent / "later.yaml").write_text(later)
-    text = lavender("plan", drop.parent, where=tmp_path)
-    lines = text.stdout.splitlines()
+    done = lavender("plan", drop.parent, where=tmp_path)
+    lines = done.stdout.splitlines()
     names = [line.partition(":")[0] for line in lines if line.endswith(": 1 cell")]
-    assert (text.returncode, len(names), text.stderr) == (0, 2, "")
+    assert (done.returncode, len(names), done.stderr) == (0, 2, "")
     plans = json.loads(lavender("plan", drop.parent, "--json", where=tmp_path).stdout)
     assert [plan["experiment"] for plan in plans] == names
     assert plans[0]["digest"] == plans[1]["digest"]
