@@ -14,7 +14,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from .compile import kernel
-from .effects import has_hook
+from .drives import NEAR, make_begin_of_part, make_next_knot
+from .effects import has_hook, made_by
 from .error_estimate import PATH, make_add_paths, make_estimate
 from .record_layout import cache_dtype, step_row_dtype
 from .records import COUNTERS, Field, dtype
@@ -104,6 +105,9 @@ def make_begin_substep(spec: Spec) -> Any:
     rows: of steps, in the log.
     """
     warms, logs = has_hook(spec, "match"), has_hook(spec, "log_step")
+    driven = bool(made_by(spec, "drive"))
+    begin_of_part: Any = make_begin_of_part(spec) if driven else None
+    next_knot: Any = make_next_knot(spec) if driven else None
 
     def begin_substep(state, params, counters, rows):
         control = state.control
@@ -119,8 +123,13 @@ def make_begin_substep(spec: Spec) -> Any:
         control.counters[0] = counters
         if logs:
             control.row[0] = rows[counters.step_rows]
-        left = params.timestep - record.start
-        record.phase, record.length, record.until = WHOLE, left, params.timestep
+        left, until = params.timestep - record.start, params.timestep
+        if driven:  # none is of second order where what acts on bodies bends or jumps
+            now = begin_of_part(params, counters)
+            knot = next_knot(state.drives, now, now + left)
+            if knot < now + left - NEAR * (1.0 + now):
+                left, until = knot - now, record.start + (knot - now)
+        record.phase, record.length, record.until = WHOLE, left, until
         shortest = params.smallest_timestep
         if 0.0 < record.proposed < left and shortest < left:
             # Two of nearly equal lengths rather than a long one and what remains.
