@@ -22,8 +22,8 @@ from .records import COUNTERS, Field, dtype
 from .spec import Spec
 from .step_terms import step_terms
 
-# What is being made of a substep. Of the whole every part is made in halves, or it would be the same
-# in both and have no estimate: up to the middles of its parts, one by one, and the rest.
+# What is being made of a substep. Of the whole every part is made in halves, or it would be the
+# same in both and have no estimate: up to the middles of its parts, one by one, and the rest.
 NOTHING, WHOLE, FIRST_HALF, SECOND_HALF = 0, 1, 2, 3
 # What `end_span` says.
 GO_ON, STEP_ENDS, MISSED = 0, 1, 2
@@ -36,8 +36,8 @@ CAUTION, SHRINK, GROW = 0.9, 0.1, 4.0
 # Share of what is unspent that one substep may spend beyond its own.
 AT_ONCE = 1.0 / 16.0
 
-# Parts of a substep that are halved, at most: shorter ones are halved with what follows. All that is
-# not halved then has at most 1/16² of the error of a whole substep.
+# Parts of a substep that are halved, at most: shorter ones are halved with what follows. All that
+# is not halved then has at most 1/16² of the error of a whole substep.
 MOST_PARTS: Final = 16
 
 # Substeps of one step. Rolling and bouncing at accuracies of 1e-6 take some 500 in 1/60 s.
