@@ -201,9 +201,8 @@ def make_displace(spec: Spec) -> Any:
     twists = turns and midpoint  # torques of forces and springs; none: the same bits
     free_turn: Any = make_free_turn(spec)
     # A turn leaves the surface of a ball where it is; of other bodies a point of contact moves by
-    # the mean spin across its lever as Cayley's map has it, and so do the ends of ropes and joints.
-    tied = row_terms(spec).taut or row_terms(spec).bilateral
-    exactly, balls = turns and step_terms(spec).substeps, not tied
+    # the mean spin across its lever as Cayley's map has it.
+    exactly = turns and step_terms(spec).substeps
     turn_in_halves: Any = make_turn_in_halves(spec) if turns else None
     turn_by_mean: Any = made_once(spec, "turn_by_mean")[1] if centred and uneven else None
     _, jump = made_once(spec, "add_spin")
@@ -263,7 +262,7 @@ def make_displace(spec: Spec) -> Any:
                 if uneven:
                     even = is_round(body)
                 if exactly and even and lasting:
-                    if body.inv_m == 0.0 or (balls and body.shape == SPHERE):
+                    if body.inv_m == 0.0 or body.shape == SPHERE:
                         x, y, z = m.wx + v.wx, m.wy + v.wy, m.wz + v.wz
                         turn_exactly(body, half * x, half * y, half * z)
                         return True
