@@ -95,7 +95,7 @@ def met_by_a_bar(at: float) -> np.ndarray:
     return 0.6 * np.array([*along, 0.0]) + 0.15 * np.array([*ahead, 0.0])
 
 
-def struck(at: float) -> str:
+def swept(at: float) -> str:
     shape = "{kind: box, size: [2, 0.1, 0.4]}"
     turning = f"kinematic: true, angular_velocity: [0, 0, {BAR_RATE}]"
     bar = f"{{shape: {shape}, {turning}, surface: one, position: [0, 0, 0]}}"
@@ -113,7 +113,7 @@ SCENES = {
     "lands on a turntable": Phased(lands, landed),
     "rises with a table": Phased(rises, risen),
     "is pushed": Phased(pushed, driven),
-    "is struck by a bar that turns": Phased(struck, thrown),
+    "is met by a bar that turns": Phased(swept, thrown),
 }
 
 
