@@ -179,6 +179,12 @@ scene:
       angular_velocity: [0, 0, 1]
       position: [9, 0, 1]
       surface: two
+    shaken:
+      shape: {kind: box, size: [1, 1, 0.2]}
+      kinematic: true
+      motion: [{displacement: [0, 0, 0.01], factor: {kind: sine, frequency: 1}}]
+      position: [-9, 0, 1]
+      surface: two
     brick:
       shape: {kind: box, size: [0.2, 0.1, 0.3]}
       mass: 1

@@ -2,6 +2,7 @@
 
     value   f(t)
     rates   its derivatives
+    knot    the next time at which g bends or jumps: where a substep ends (`step_doubling`)
     mean    1/h times the integral of f from t to t + h: the impulse of a force is exact, and no
             pulse is too short to be noticed
 of f(t) = g(t) + a sin(omega t + phi), g linear between knots (`effects.time_functions`). The mean
@@ -16,6 +17,10 @@ from typing import Any
 
 from .compile import kernel
 from .spec import Spec
+from .step_terms import step_terms
+
+# Substeps end at knots but for round-off: knots this near are there, of 1 s and of the time [-].
+NEAR = 1e-12
 
 
 def make_begin_of_part(spec: Spec) -> Any:
@@ -42,6 +47,22 @@ def make_last_knot(spec: Spec) -> Any:
         return low
 
     return kernel(last_knot, spec)
+
+
+def make_next_knot(spec: Spec) -> Any:
+    """Return `kernel(drives, t, until) -> time` of the next knot, `until` if that comes first."""
+    last_knot = make_last_knot(spec)
+
+    def next_knot(drives, t, until):
+        slack = NEAR * (1.0 + t)
+        for d in range(drives.records.shape[0]):
+            drive = drives.records[d]
+            k = last_knot(drive, drives.knots, t + slack) + 1
+            if k < drive.first + drive.count:
+                until = min(until, drives.knots[k].time)
+        return until
+
+    return kernel(next_knot, spec)
 
 
 def make_on_line(spec: Spec) -> Any:
@@ -78,11 +99,13 @@ def make_rates(spec: Spec) -> Any:
     before.
     """
     last_knot = make_last_knot(spec)
+    near = NEAR if step_terms(spec).substeps else 0.0
 
     def rates(drive, knots, t, after):
-        k, first, second, third = last_knot(drive, knots, t), 0.0, 0.0, 0.0
+        slack = near * (1.0 + t)
+        k, first, second, third = last_knot(drive, knots, t + slack), 0.0, 0.0, 0.0
         if not after:
-            while k >= drive.first and knots[k].time == t:
+            while k >= drive.first and knots[k].time >= t - slack:
                 k -= 1
         if k == drive.first + drive.count - 1:
             first = drive.slope

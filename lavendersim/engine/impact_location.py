@@ -23,12 +23,12 @@ from .approach import (
     make_nearest_rate,
     relative_velocity,
 )
+from .body_turn import make_free_turn
 from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import put_normal
 from .compile import kernel, separate
 from .effects import has_hook, made_once
-from .integrate import make_turn
 from .records import INSTANT, PLANE, TOUCHING
 from .spec import Spec
 from .step_terms import step_terms
@@ -61,7 +61,7 @@ def make_locate(spec: Spec) -> Any:
     manifold, approach = make_manifold(spec, spec.shape_pairs), make_approach(spec)
     change_ahead, nearest_rate = make_change_ahead(spec), make_nearest_rate(spec)
     turns, compound = step_terms(spec).turns, has_hook(spec, "place_parts")
-    turn: Any = make_turn(spec)
+    turn: Any = make_free_turn(spec)
     overlooks = step_terms(spec).overlooks
     _, place_part = made_once(spec, "place_part")
 

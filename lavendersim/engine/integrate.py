@@ -11,11 +11,12 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
+from .body_turn import make_free_turn, make_turn, make_turn_in_halves
 from .compile import kernel
 from .effects import has_hook, made_once
 from .joined_impacts import make_share_impacts
-from .records import NOT_FINITE, TURNS_TOO_FAST
-from .rotation import inertia_times, inverse_inertia_times, is_round, orient, turn
+from .records import NOT_FINITE, SPHERE, TURNS_TOO_FAST
+from .rotation import inertia_times, is_round, turn, turn_exactly
 from .row_terms import make_acts, row_terms
 from .spec import Spec
 from .spring_turn import BOTH, PLACED, make_twist
@@ -29,12 +30,6 @@ LASTING = 3  # through the whole step, and its surfaces do not approach as it be
 # CONTACT.is_impact: what sets the row's target.
 IMPACT = 1  # an impact, at its time
 AHEAD = 2  # a gap that bodies fly into after an impact of theirs: reached, if at all, at the end
-
-# A spin whose square shrinks by this in a step is all but stopped: 64 times slower [-].
-STOPPED = 4096.0
-# Where a turn changes the spin that a body gains by more than this, the step is too long for what
-# is stiff in it (a needle about its long axis), and halves are no nearer than the whole [-].
-LIKE = 0.1
 
 
 def keeps_motion(spec: Spec) -> bool:
@@ -195,52 +190,6 @@ def make_classify(spec: Spec) -> Any:
     return kernel(classify, spec)
 
 
-def make_turn(spec: Spec) -> Any:
-    """Return `kernel(body, velocity, dt) -> solved`: the body's turn; None where nothing turns."""
-    uneven, turn_uneven = made_once(spec, "turn_uneven")
-    return turn_uneven if uneven else made_once(spec, "turn")[1]
-
-
-def make_turn_in_halves(spec: Spec) -> Any:
-    """Return `kernel(body, v, m, dt) -> solved`: the body's turn under torques, of order 2.
-
-    Half of the spin that the step gives is given before the turn, half after it; all of it before,
-    where the body turns so far that the halves would be unlike: with moments of inertia a million
-    to one the second would drive it about the axis that resists least.
-    """
-    integrate_rotation: Any = make_turn(spec)
-    sprung = step_terms(spec).sprung and step_terms(spec).mean_flight
-
-    def turn_in_halves(body, v, m, dt):
-        stops = True
-        if sprung:
-            stops = body.sprung == 0  # what springs turn back turns by the mean as well
-        gained_x, gained_y, gained_z = v.wx - m.wx, v.wy - m.wy, v.wz - m.wz
-        twisted = gained_x != 0.0 or gained_y != 0.0 or gained_z != 0.0
-        # A spin that a step all but stops would cancel to its last digits, and turns nothing.
-        last = v.wx * v.wx + v.wy * v.wy + v.wz * v.wz
-        before = m.wx * m.wx + m.wy * m.wy + m.wz * m.wz
-        if not (twisted and (STOPPED * last >= before or not stops)):
-            return integrate_rotation(body, v, dt)
-        whole_x, whole_y, whole_z = v.wx, v.wy, v.wz
-        w, i, j, k = body.qw, body.qx, body.qy, body.qz
-        x, y, z = inertia_times(body, gained_x, gained_y, gained_z)
-        v.wx, v.wy, v.wz = m.wx + 0.5 * gained_x, m.wy + 0.5 * gained_y, m.wz + 0.5 * gained_z
-        solved = integrate_rotation(body, v, dt)
-        x, y, z = inverse_inertia_times(body, x, y, z)
-        off = (x - gained_x) ** 2 + (y - gained_y) ** 2 + (z - gained_z) ** 2
-        gained = gained_x * gained_x + gained_y * gained_y + gained_z * gained_z
-        if off > LIKE * LIKE * gained:
-            body.qw, body.qx, body.qy, body.qz = w, i, j, k
-            orient(body)
-            v.wx, v.wy, v.wz = whole_x, whole_y, whole_z
-            return integrate_rotation(body, v, dt)
-        v.wx, v.wy, v.wz = v.wx + 0.5 * x, v.wy + 0.5 * y, v.wz + 0.5 * z
-        return solved
-
-    return kernel(turn_in_halves, spec)
-
-
 def make_displace(spec: Spec) -> Any:
     """Return `kernel(body, v, m, dt) -> solved`: the body's displacement in the step."""
     turns = step_terms(spec).turns
@@ -250,7 +199,10 @@ def make_displace(spec: Spec) -> Any:
     at_surface = step_terms(spec).timed_impacts
     uneven, centred = step_terms(spec).uneven, step_terms(spec).centred
     twists = turns and midpoint  # torques of forces and springs; none: the same bits
-    integrate_rotation: Any = make_turn(spec)
+    free_turn: Any = make_free_turn(spec)
+    # A turn leaves the surface of a ball where it is; of other bodies a point of contact moves by
+    # the mean spin across its lever as Cayley's map has it.
+    exactly = turns and step_terms(spec).substeps
     turn_in_halves: Any = make_turn_in_halves(spec) if turns else None
     turn_by_mean: Any = made_once(spec, "turn_by_mean")[1] if centred and uneven else None
     _, jump = made_once(spec, "add_spin")
@@ -285,12 +237,12 @@ def make_displace(spec: Spec) -> Any:
                     v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
                     solved = True
                     if m.tau > 0.0:
-                        solved = integrate_rotation(body, v, m.tau)
+                        solved = free_turn(body, v, m.tau)
                     if uneven:
                         jump(body, v, gained_x, gained_y, gained_z, twice_spent)
                     else:
                         v.wx, v.wy, v.wz = v.wx + gained_x, v.wy + gained_y, v.wz + gained_z
-                    return integrate_rotation(body, v, rest) and solved
+                    return free_turn(body, v, rest) and solved
                 return True
         x, y, z = v.vx * dt, v.vy * dt, v.vz * dt
         sprung = False
@@ -309,15 +261,20 @@ def make_displace(spec: Spec) -> Any:
                 even = True
                 if uneven:
                     even = is_round(body)
+                if exactly and even and lasting:
+                    if body.inv_m == 0.0 or body.shape == SPHERE:
+                        x, y, z = m.wx + v.wx, m.wy + v.wy, m.wz + v.wz
+                        turn_exactly(body, half * x, half * y, half * z)
+                        return True
                 if even and lasting:
                     turn(body, half * (m.wx + v.wx), half * (m.wy + v.wy), half * (m.wz + v.wz))
                     return True
                 if even:
-                    return integrate_rotation(body, v, dt)
+                    return free_turn(body, v, dt)
                 if m.midway == 0:  # all but still: its contacts are those of the start
                     if lasting:
                         return turn_in_halves(body, v, m, dt)
-                    return integrate_rotation(body, v, dt)
+                    return free_turn(body, v, dt)
                 # Impulses changed its spin at the middle; what jumps turns with that after them.
                 mean = Vec3(m.mean_x, m.mean_y, m.mean_z)
                 spin = mean if lasting else Vec3(v.wx, v.wy, v.wz)
@@ -349,7 +306,7 @@ def make_displace(spec: Spec) -> Any:
             if m.carried == 0:
                 return turn_in_halves(body, v, m, dt)
         if turns:
-            return integrate_rotation(body, v, dt)
+            return free_turn(body, v, dt)
         return True
 
     return kernel(displace, spec)

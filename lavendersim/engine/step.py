@@ -57,6 +57,7 @@ from .step_doubling import (
     make_abandon,
     make_begin_substep,
     make_end_span,
+    make_note_part,
 )
 from .step_terms import step_terms
 
@@ -108,6 +109,7 @@ def make_advance(spec: Spec) -> Any:
     begin_substep: Any = make_begin_substep(spec) if controlled else None
     end_span: Any = make_end_span(spec) if controlled else None
     abandon: Any = make_abandon(spec) if controlled else None
+    note_part: Any = make_note_part(spec) if controlled and ordered else None
     stand: Any = make_stand(spec) if ordered else None
     iterates = touches and has_limits(spec)
     count_limits: Any = make_count_limits(spec) if iterates else None
@@ -282,6 +284,8 @@ def make_advance(spec: Spec) -> Any:
             if ordered:
                 if length < left and diverged < 0:
                     counters.elapsed += length
+                    if controlled:
+                        note_part(state.control, counters.elapsed)
                     continue
             if controlled:
                 if diverged >= 0:

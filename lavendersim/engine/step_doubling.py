@@ -1,7 +1,8 @@
 """Step doubling: substeps made whole and in halves, and which of them is kept (`error_control`).
 
 begin     keep the state that a substep begins with, and choose its length
-end_span  when the whole of it, or one half, is made: what comes next
+note_part where a part of the whole ends before it does: an impact, or sliding that stops
+end_span  when the whole of it, or what comes next of its halves, is made: what comes next
 abandon   back to where the substep begins, for a step that its caller begins again
 """
 
@@ -13,14 +14,16 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from .compile import kernel
-from .effects import has_hook
+from .drives import NEAR, make_begin_of_part, make_next_knot
+from .effects import has_hook, made_by
 from .error_estimate import PATH, make_add_paths, make_estimate
 from .record_layout import cache_dtype, step_row_dtype
 from .records import COUNTERS, Field, dtype
 from .spec import Spec
 from .step_terms import step_terms
 
-# What is being made of a substep.
+# What is being made of a substep. Of the whole every part is made in halves, or it would be the
+# same in both and have no estimate: up to the middles of its parts, one by one, and the rest.
 NOTHING, WHOLE, FIRST_HALF, SECOND_HALF = 0, 1, 2, 3
 # What `end_span` says.
 GO_ON, STEP_ENDS, MISSED = 0, 1, 2
@@ -33,6 +36,10 @@ CAUTION, SHRINK, GROW = 0.9, 0.1, 4.0
 # Share of what is unspent that one substep may spend beyond its own.
 AT_ONCE = 1.0 / 16.0
 
+# Parts of a substep that are halved, at most: shorter ones are halved with what follows. All that
+# is not halved then has at most 1/16² of the error of a whole substep.
+MOST_PARTS: Final = 16
+
 # Substeps of one step. Rolling and bouncing at accuracies of 1e-6 take some 500 in 1/60 s.
 MOST_SUBSTEPS: Final = 4096
 
@@ -42,6 +49,8 @@ CONTROL: Final[list[Field]] = [
     ("length", "f8"),  # of the substep [s]
     ("end", "f8"),  # of the substep, from the start of the step [s]
     ("until", "f8"),  # end of what is being made, from the start of the step [s]
+    ("cuts", "i8"),  # of the whole, where its parts end that are halved
+    ("halved", "i8"),  # parts whose middle has been reached, or is on the way
     ("proposed", "f8"),  # length of the next substep; 0: as long as can be [s]
     ("smooth", "f8"),  # length that is tried again behind a kink [s]
     ("before", "f8"),  # time of the run when the step begins [s]
@@ -62,6 +71,7 @@ class Control(NamedTuple):
     row: np.ndarray  # (1,) of the log; none where nothing is logged
     whole: np.ndarray  # (n,) bodies that the whole substep leads to
     differences: np.ndarray  # (n,) velocities that it leads to, then what they differ by
+    cuts: np.ndarray  # (MOST_PARTS,) f8, ends of its parts, from the start of the step [s]
 
 
 def allocate_control(spec: Spec, bodies: np.ndarray, velocities: np.ndarray, capacity: int) -> Any:
@@ -78,6 +88,7 @@ def allocate_control(spec: Spec, bodies: np.ndarray, velocities: np.ndarray, cap
         row=np.zeros(1 if has_hook(spec, "log_step") else 0, step_row_dtype(spec)),
         whole=np.zeros_like(bodies),
         differences=np.zeros_like(velocities),
+        cuts=np.zeros(MOST_PARTS),
     )
 
 
@@ -94,6 +105,9 @@ def make_begin_substep(spec: Spec) -> Any:
     rows: of steps, in the log.
     """
     warms, logs = has_hook(spec, "match"), has_hook(spec, "log_step")
+    driven = bool(made_by(spec, "drive"))
+    begin_of_part: Any = make_begin_of_part(spec) if driven else None
+    next_knot: Any = make_next_knot(spec) if driven else None
 
     def begin_substep(state, params, counters, rows):
         control = state.control
@@ -109,16 +123,56 @@ def make_begin_substep(spec: Spec) -> Any:
         control.counters[0] = counters
         if logs:
             control.row[0] = rows[counters.step_rows]
-        left = params.timestep - record.start
-        record.phase, record.length, record.until = WHOLE, left, params.timestep
+        left, until = params.timestep - record.start, params.timestep
+        if driven:  # none is of second order where what acts on bodies bends or jumps
+            now = begin_of_part(params, counters)
+            knot = next_knot(state.drives, now, now + left)
+            if knot < now + left - NEAR * (1.0 + now):
+                left, until = knot - now, record.start + (knot - now)
+        record.phase, record.length, record.until = WHOLE, left, until
         shortest = params.smallest_timestep
         if 0.0 < record.proposed < left and shortest < left:
             # Two of nearly equal lengths rather than a long one and what remains.
             record.length = max(min(record.proposed, 0.5 * left), shortest)
             record.until = record.start + record.length
-        record.end = record.until
+        record.end, record.cuts, record.halved = record.until, 0, 0
 
     return kernel(begin_substep, spec)
+
+
+def make_note_part(spec: Spec) -> Any:
+    """Return `kernel(control, elapsed)`: a part ends there, before what is being made does."""
+
+    def note_part(control, elapsed):
+        record = control.record[0]
+        if record.phase == WHOLE:
+            begin = record.start
+            if record.cuts > 0:
+                begin = control.cuts[record.cuts - 1]
+            if MOST_PARTS * (elapsed - begin) > record.length:
+                control.cuts[record.cuts] = elapsed
+                record.cuts += 1
+
+    return kernel(note_part, spec)
+
+
+def make_next_middle(spec: Spec) -> Any:
+    """Return `kernel(control)`: on to the middle of the next part of the whole."""
+
+    def next_middle(control):
+        record = control.record[0]
+        if record.cuts == 0:
+            record.until = record.start + 0.5 * record.length
+        else:
+            begin, end = record.start, record.end
+            if record.halved > 0:
+                begin = control.cuts[record.halved - 1]
+            if record.halved < record.cuts:
+                end = control.cuts[record.halved]
+            record.until = 0.5 * (begin + end)
+        record.halved += 1
+
+    return kernel(next_middle, spec)
 
 
 def make_restore(spec: Spec) -> Any:
@@ -216,7 +270,7 @@ def make_end_span(spec: Spec) -> Any:
 
     count: of contacts of the part that ends; failed: a body is no longer finite, or turns too far.
     """
-    restore, judge = make_restore(spec), make_judge(spec)
+    restore, judge, next_middle = make_restore(spec), make_judge(spec), make_next_middle(spec)
     estimate, add_paths = make_estimate(spec), make_add_paths(spec)
 
     def end_half(counters):
@@ -236,11 +290,13 @@ def make_end_span(spec: Spec) -> Any:
                     control.differences[i] = state.velocities[i]
                 restore(state, params, counter, rows)
                 record.phase = FIRST_HALF
-                record.until = record.start + 0.5 * record.length
+                next_middle(control)
                 return GO_ON
             if record.phase == FIRST_HALF:
-                record.phase = SECOND_HALF
-                record.until = record.end
+                if record.halved <= record.cuts:
+                    next_middle(control)
+                else:
+                    record.phase, record.until = SECOND_HALF, record.end
                 end_half(counters)
                 return GO_ON
         record.phase = NOTHING

@@ -23,8 +23,9 @@ GROUPS = {
     "solvers": ("solvers/*.py",),
     "collide": ("collide/*.py",),
     "integrate": (
-        *("integrate.py", "rotation.py", "approach.py", "impact_location.py", "islands.py"),
+        *("integrate.py", "body_turn.py", "rotation.py", "approach.py", "impact_location.py"),
         *("foreseen_impacts.py", "spring_midpoint.py", "drives.py", "ordering.py", "vectors.py"),
+        "islands.py",
     ),
 }
 

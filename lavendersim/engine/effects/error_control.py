@@ -12,8 +12,10 @@ left) no length makes a step of second order; there e may be a share of what the
 have left unspent, and the substep gets shorter until it is. One that had to be shorter than
 `smallest_timestep` ends the run.
 
-Within a substep impacts happen at their own times, as ever (`impact_order`). The timestep is the
-longest substep, and what the log has rows of: substeps end where a step ends.
+Within a substep impacts happen at their own times, as ever (`impact_order`), and each part between
+them is made in halves: one that both ways share would have no estimate. The timestep is the longest
+substep, and what the log has rows of: substeps end where a step ends, and where a function of time
+bends or jumps. Round bodies that keep their spin, and kinematic ones, turn exactly (`body_turn`).
 """
 
 from __future__ import annotations

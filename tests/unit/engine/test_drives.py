@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from interpreted import interpreted, records
@@ -99,3 +101,27 @@ def test_a_part_begins_where_whole_steps_since_the_last_change_and_earlier_parts
     counters = np.zeros(1, dtype([("step", "i8"), ("elapsed", "f8")]))
     parameters[0], counters[0] = (10, 2.0, 0.01), (15, 0.004)
     assert begin(records(parameters)[0], records(counters)[0]) == pytest.approx(2.054, abs=1e-15)
+
+
+def test_the_next_knot_is_the_first_of_all_drives_that_is_not_there_yet() -> None:
+    """But for round-off: what ends at a knot begins at it, however its time was summed up."""
+    knots, pair = np.zeros(8, dtype(KNOT)), np.zeros(2, dtype(DRIVE))
+    knots["time"][:2], knots["time"][2:6] = (0.0, 0.75), TIMES
+    pair["first"], pair["count"] = (0, 2), (2, 4)
+    both = SimpleNamespace(records=records(pair), knots=records(knots))
+    find = interpreted(drives.make_next_knot(Spec()))
+    for t, expected in ((0.1, 0.5), (0.5 - 1e-13, 0.75), (0.5, 0.75), (0.8, 1.0), (1.0, 2.5)):
+        assert find(both, t, 9.0) == expected
+    assert find(both, 0.1, 0.4) == 0.4  # what comes first
+    assert find(both, 3.0, 9.0) == 9.0
+
+
+def test_substeps_that_end_at_a_bend_but_for_round_off_have_the_rates_of_their_own_side() -> None:
+    """Of steps of one length the sides are those of the times as they are."""
+    in_substeps = interpreted(drives.make_rates(Spec(effects=("error_control",))))
+    drive, knots = drive_of(0.0)
+    before, behind = (-1.0 - 2.0) / 0.5, (1.0 - 3.0) / 1.5
+    for t in (1.0 - 1e-13, 1.0, 1.0 + 1e-13):
+        assert in_substeps(drive, knots, t, False)[0] == pytest.approx(before)
+        assert in_substeps(drive, knots, t, True)[0] == pytest.approx(behind)
+    assert rates(drive, knots, 1.0 + 1e-13, False)[0] == pytest.approx(behind)

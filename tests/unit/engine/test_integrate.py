@@ -18,7 +18,12 @@ from plain_facts import one_row
 from lavendersim.engine import integrate
 from lavendersim.engine.integrate import AFTERWARDS, AHEAD, ALWAYS, IMPACT, LASTING
 from lavendersim.engine.record_layout import allocate_bodies, allocate_velocities, contact_dtype
-from lavendersim.engine.records import MOTION, NOT_FINITE, TURNS_TOO_FAST, dtype
+from lavendersim.engine.records import (
+    MOTION,
+    NOT_FINITE,
+    TURNS_TOO_FAST,
+    dtype,
+)
 from lavendersim.engine.rotation import orient
 from lavendersim.engine.spec import Spec
 
@@ -185,40 +190,6 @@ def test_halves_of_a_torque_are_of_second_order(rng) -> None:
     body.moved(UNEVEN)
     np.testing.assert_allclose(body.angle(), (0.0, 0.0, 3.5 * DT), atol=1e-14)
     np.testing.assert_allclose(body.spin(), (0.0, 0.0, 4.0), atol=1e-14)
-
-
-@pytest.mark.parametrize(("share", "mean"), [(65.0, False), (63.0, True)])
-def test_a_spin_that_is_all_but_stopped_does_not_turn_by_its_mean(share: float, mean: bool) -> None:
-    """64 times slower it is the round-off of what cancels."""
-    body = Body(UNEVEN, np.random.default_rng(1))
-    body.gives(m_w=(0, 0, 1.0), w=(0, 0, 1.0 / share))
-    body.moved(UNEVEN)
-    expected = 0.5 * (1.0 + 1.0 / share) if mean else 1.0 / share
-    np.testing.assert_allclose(body.angle(), (0.0, 0.0, expected * DT), atol=1e-14)
-
-
-@pytest.mark.parametrize("halves", [True, False])
-def test_a_needle_that_turns_far_gets_all_of_its_spin_before_the_turn(halves: bool, rng) -> None:
-    """Turned about its first axis, what it gains along the second goes over to the third.
-
-    I_1^-1 I_0 g is g (0, cos, -sin/I_3) in axes of the body, and g itself (0, cos, -sin): they
-    differ by sin (1/I_3 - 1), and LIKE is the limit of it.
-    """
-    w = 30.0
-    sine = np.sin(2.0 * np.arctan(0.5 * w * DT))
-    thin = 1.0 / (1.0 + integrate.LIKE / sine * (1.0 - 1e-3 if halves else 1.0 + 1e-3))
-    moments = (1.0, 1.0, thin)
-    body, plain = Body(UNEVEN, rng, moments), Body(UNEVEN, rng, moments)
-    for name in ("qw", "qx", "qy", "qz"):
-        plain.rows[name] = body.rows[name]
-    ORIENT(plain.row)
-    before, gained = w * body.frame[:, 0], 1e-6 * body.frame[:, 1]  # too little to bend the turn
-    body.gives(m_w=before, w=before + gained)
-    plain.gives(w=before + gained)
-    body.moved(UNEVEN)
-    interpreted(integrate.make_turn(UNEVEN))(plain.row, plain.v, DT)
-    assert (body.turn() == plain.turn()).all() == (not halves)
-    assert (body.spin() == plain.spin()).all() == (not halves)
 
 
 def test_forces_are_noted_and_undone(rng) -> None:

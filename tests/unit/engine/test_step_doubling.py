@@ -12,8 +12,13 @@ from interpreted import interpreted, records
 from plain_facts import one_row
 
 from lavendersim.engine import memory, step_doubling
-from lavendersim.engine.record_layout import allocate_bodies, allocate_velocities, step_row_dtype
-from lavendersim.engine.records import DIVERGED, INACCURATE
+from lavendersim.engine.record_layout import (
+    allocate_bodies,
+    allocate_drives,
+    allocate_velocities,
+    step_row_dtype,
+)
+from lavendersim.engine.records import DIVERGED, INACCURATE, KNOT, dtype
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.step_doubling import (
     AT_ONCE,
@@ -23,6 +28,7 @@ from lavendersim.engine.step_doubling import (
     GO_ON,
     GROW,
     MISSED,
+    MOST_PARTS,
     MOST_SUBSTEPS,
     NOTHING,
     SECOND_HALF,
@@ -187,6 +193,52 @@ def test_halves_follow_the_whole_from_the_same_start() -> None:
     assert said == STEP_ENDS
     assert made.record.phase == NOTHING
     assert made.counter.elapsed == STEP
+
+
+def test_every_part_of_a_whole_is_halved() -> None:
+    """Where it ends at an impact or at a stop; one that is too short goes with what follows."""
+    short = 0.9 * STEP / MOST_PARTS
+    made, note = Substeps(), interpreted(step_doubling.make_note_part(SPEC))
+    made.begin()
+    for elapsed in (0.03, 0.03 + short, 0.07, 0.07):
+        note(made.state.control, elapsed)
+    spans = []
+    while made.record.phase != NOTHING:
+        assert made.end() in (GO_ON, STEP_ENDS)
+        if made.record.phase != NOTHING:
+            spans.append((int(made.record.phase), float(made.record.until)))
+            note(made.state.control, 0.001)  # of halves nothing is noted
+    middles = [(FIRST_HALF, pytest.approx(t)) for t in (0.015, 0.05, 0.085)]
+    assert spans == [*middles, (SECOND_HALF, STEP)]
+    assert made.counter.substeps == 2
+    made.counter.parts = 0
+    made.begin()  # the next has none
+    assert made.end() == GO_ON
+    assert made.record.until == 0.5 * STEP
+
+
+def test_parts_that_are_halved_have_room() -> None:
+    made, note = Substeps(), interpreted(step_doubling.make_note_part(SPEC))
+    made.begin()
+    for elapsed in np.linspace(0.0, STEP, 1000)[:-1]:
+        note(made.state.control, elapsed)
+    assert 8 <= made.record.cuts <= MOST_PARTS
+
+
+def test_a_substep_ends_where_a_function_of_time_bends() -> None:
+    spec = SPEC.including("varying_force")
+    knots, drive = np.zeros(2, dtype(KNOT)), allocate_drives(spec, 1)
+    knots["time"], drive["count"] = (0.0, 2.03), 2
+    for begin, proposed, end in ((2.0, 0.0, 0.03), (2.0, 0.01, 0.01), (1.9, 0.0, STEP)):
+        made = Substeps(spec, stretch_step=0, stretch_begin=begin)
+        made.state.drives = SimpleNamespace(records=records(drive), knots=records(knots))
+        made.record.proposed = proposed
+        made.begin()
+        assert made.record.end == made.record.until == pytest.approx(end, abs=1e-14)
+        assert made.record.length == pytest.approx(end, abs=1e-14)
+    made.record.start = made.counter.elapsed = 0.03  # behind it
+    made.begin()
+    assert made.record.end == STEP
 
 
 def test_what_is_kept_is_counted_and_what_is_off_is_made_again() -> None:
