@@ -50,6 +50,9 @@ MEANT: Final = {
     "weight": "mass",
     "omega": "angular_velocity",
     "spin": "angular_velocity",
+    "from": "between",
+    "to": "between",
+    "ends": "between",
 }
 HALVES: Final = {"diameter": "radius"}  # of what the first is, the second is half
 LONGEST_QUOTE = 40
