@@ -38,6 +38,7 @@ MEANT: Final = {
     "greater_than": "at_least",
     "above": "at_least",
     "min": "at_least",
+    "joint": "connection",
     "joints": "connections",
     "ropes": "connections",
     "constraints": "connections",
