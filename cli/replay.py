@@ -95,7 +95,7 @@ def replay(
             "--live", help="Follow a cell that is still run, of the newest run by default."
         ),
     ] = False,
-    copy: Annotated[Path | None, typer.Option("--copy", hidden=True)] = None,
+    copy: Annotated[Path | None, typer.Option("--copy", hidden=True)] = None,  # of `run --live`
     allow_incomplete: AllowIncomplete = False,
 ) -> None:
     """Replay a run in rerun: bodies, contact forces and their plots over simulated time.
