@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -94,6 +95,7 @@ def replay(
             "--live", help="Follow a cell that is still run, of the newest run by default."
         ),
     ] = False,
+    copy: Annotated[Path | None, typer.Option("--copy", hidden=True)] = None,  # of `run --live`
     allow_incomplete: AllowIncomplete = False,
 ) -> None:
     """Replay a run in rerun: bodies, contact forces and their plots over simulated time.
@@ -120,7 +122,7 @@ def replay(
         asked = {"OTHER": other, "--at": at, "--screenshot": screenshot_to, "--video": video_to}
         if given := [option for option, value in asked.items() if value is not None]:
             raise UsageError(f"{given[0]}: leave it out, or --live: that shows a log as it grows")
-        _follow(run, runs, cell or 0, viewpoint, save_to)
+        _follow(run, runs, cell or 0, viewpoint, save_to, copy)
         return
     opened = open_run(run, runs, allow_incomplete)
     chosen = [cell_of(opened, cell or 0)]
@@ -165,9 +167,14 @@ def replay(
 
 
 def _follow(
-    run: Path | None, runs: Path, cell: int, viewpoint: Viewpoint, save_to: Path | None
+    run: Path | None,
+    runs: Path,
+    cell: int,
+    viewpoint: Viewpoint,
+    save_to: Path | None,
+    copy: Path | None,
 ) -> None:
-    """Show a cell of a run that goes on."""
+    """Show a cell of a run that goes on; copy: of its log, ahead of it."""
     from lavendersim import replay as viewer
     from lavendersim.errors import UsageError
     from lavendersim.runner import open_run
@@ -182,7 +189,8 @@ def _follow(
     opened = open_run(run, runs, True)
     chosen = cell_of(opened, cell)
     title = f"{opened.path.name} {chosen.label}".strip()
-    viewer.follow(chosen.path, lambda: is_locked(opened.path), title, viewpoint, save_to=save_to)
+    written = partial(is_locked, opened.path)
+    viewer.follow(chosen.path, written, title, viewpoint, save_to=save_to, copy=copy)
     if save_to is not None:
         typer.echo(save_to)
 

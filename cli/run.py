@@ -233,7 +233,8 @@ def run(
             with on_full_disk(command), ExitStack() as open_now:
                 shown = open_now.enter_context(progress.reporting(experiment.name))
                 if live:
-                    shown = shown._replace(began=open_now.enter_context(shown_live()))
+                    began, copy = open_now.enter_context(shown_live())
+                    shown = shown._replace(began=began, copy=copy)
                 workers: Executor | None = None
                 if executor is not None or dask is not None:
                     from lavendersim.runner.dask_cluster import dask_workers

@@ -55,6 +55,15 @@ def series_of(cells: Sequence[Cell], axis: str | None, label: str = "") -> list[
     ]
 
 
+def axis_of(cells: Sequence[Cell]) -> str | None:
+    """Return the axis by which cells differ; None where there is none, or more than one."""
+    axes = dict.fromkeys(axis for cell in cells for axis in cell.coordinates)
+    if any(axis not in cell.coordinates for cell in cells for axis in axes):
+        return None
+    differing = [axis for axis in axes if len(by_value(cells, axis)) > 1]
+    return differing[0] if len(differing) == 1 else None
+
+
 def _number(value: object) -> float | None:
     is_number = isinstance(value, int | float | Fraction) and not isinstance(value, bool)
     return float(value) if is_number else None  # type: ignore[arg-type]

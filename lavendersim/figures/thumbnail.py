@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.cell import CellShape, Plane
+from lavendersim.cell import CellShape, Convex, Ellipsoid, Plane
 from lavendersim.figures.style import DARK, GREY, LOOKS
 from lavendersim.geometry.rotations import rotation_matrices, rotation_matrix
 from lavendersim.geometry.shapes import half_space, pieces
@@ -134,10 +134,19 @@ def grounds_of(
 def corners_of(shape: CellShape) -> np.ndarray:
     """Return points (n, 3) in the body's frame [m] whose convex hull is the shape, or nearly."""
     placed = [
-        piece.position + np.asarray(piece.shape.corners()) @ rotation_matrix(piece.orientation).T
+        piece.position + _round_or_not(piece.shape) @ rotation_matrix(piece.orientation).T
         for piece in pieces(shape)
     ]
     return np.concatenate(placed)
+
+
+def _round_or_not(shape: Convex) -> np.ndarray:
+    """Return points (n, 3) of a solid [m]; many of an ellipsoid, whose ends are sharply curved."""
+    if not isinstance(shape, Ellipsoid):
+        return np.asarray(shape.corners())
+    turn = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
+    circle = np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])
+    return np.concatenate([np.roll(circle, k, axis=1) for k in range(3)]) * shape.semi_axes
 
 
 def _hull(points: np.ndarray) -> np.ndarray:

@@ -22,6 +22,8 @@ class ConfigModel(BaseModel):
 
     # Keys that people write here and that stand elsewhere: what to write, for the message.
     MISPLACED: ClassVar[Mapping[str, str]] = {}
+    # What stands in such a mapping, for who wrote none; none: the keys that it requires.
+    FORM: ClassVar[str] = ""
 
     @model_validator(mode="before")
     @classmethod

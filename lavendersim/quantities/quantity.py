@@ -7,6 +7,7 @@ numbers out of bounds with a sentence of its own, and describes itself to JSON S
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
@@ -247,7 +248,7 @@ class Vector:
 
     def _wrap(self, value: object, items: Any) -> Any:
         if not isinstance(value, list | tuple) or len(value) != self.length:
-            raise refusal(self.expected, value, advice(value, self.item.unit))
+            raise refusal(self.expected, value, self._advice(value))
         numbers = items(tuple(value))
         if self.nonzero and not any(numbers):
             raise sentence_error(f"expected {self.expected}, not all zero, found only zeros")
@@ -255,6 +256,18 @@ class Vector:
             expected = f"a largest number from {SMALLEST:g} to {LARGEST:g}"
             raise refusal(f"{self.expected} with {expected}", float(largest), OF_64_BITS)
         return numbers
+
+    def _advice(self, value: object) -> str:
+        """Return how what is no list is written as one, or nothing when nothing is sure."""
+        if isinstance(value, Mapping):
+            return f"; write [{', '.join(map(str, value))}]"
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            each = [f"{value:g}" if self.item.above is not None else "..."] * self.length
+            return f"; write [{', '.join(each)}]"
+        if self.nonzero and isinstance(value, str) and value.strip("+-") in ("x", "y", "z"):
+            one = "-1" if value.startswith("-") else "1"
+            return f"; write [{', '.join(one if value[-1] == axis else '0' for axis in 'xyz')}]"
+        return advice(value, self.item.unit)
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler

@@ -52,16 +52,18 @@ def follow(
     viewpoint: Viewpoint = DEFAULT_VIEW,
     *,
     save_to: Path | None = None,
+    copy: Path | None = None,
 ) -> None:
     """Show a log in a rerun window as it grows, until it is whole or nobody writes it any more.
 
     is_written: whether somebody may write more. save_to: writes a recording (.rrd) in place of the
-    window. Raises MissingDriverError where there is no display to open a window on, TraceError
-    where nothing whole was ever written.
+    window. copy: of the log, written with every block of steps; the log itself comes in chunks.
+    Raises MissingDriverError where there is no display to open a window on, TraceError where
+    nothing whole was ever written.
     """
     from lavendersim.replay.live import follow_file
 
-    follow_file(path, is_written, title or Path(path).stem, viewpoint, save_to)
+    follow_file(path, is_written, title or Path(path).stem, viewpoint, save_to, copy)
 
 
 def save(

@@ -7,12 +7,14 @@ lasting contact gets a readable length; longer ones are cut and coloured, never 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from lavendersim.replay.joint_forces import has_joints
+from lavendersim.replay.shapes import DrawnBody
 
 CONTACT_KEY = ("body_a", "body_b", "feature")  # equal from step to step while a contact lasts
 LASTING_SHARE = 0.1  # of the longest contact's loaded steps
@@ -20,6 +22,7 @@ LASTING_SHARE = 0.1  # of the longest contact's loaded steps
 TYPICAL_LENGTH = 0.25  # of the scene's diagonal: seen beside a body, smaller than the scene
 OF_CONTACTS = "contact forces"
 CUT_LENGTH = 0.5  # of the scene's diagonal: still inside the picture
+LARGEST_SCENE = 16.0  # bodies: in a larger one arrows would hide the small bodies that they act on
 
 
 class ForceScale(NamedTuple):
@@ -44,6 +47,13 @@ class ForceScale(NamedTuple):
         length = np.asarray(force) / self.newtons_per_metre
         cut = np.abs(length) > self.cut
         return normal * np.clip(length, -self.cut, self.cut)[:, None], cut
+
+
+def scene_size(diagonal: float, bodies: Sequence[DrawnBody]) -> float:
+    """Return the size [m] that arrows are a share of: of the room, or of its bodies' usual size."""
+    sizes = [2.0 * body.bounding_radius for body in bodies if not body.fixed]
+    sizes = [size for size in sizes if size > 0.0]
+    return min(diagonal, LARGEST_SCENE * float(np.median(sizes))) if sizes else diagonal
 
 
 def force_scale(contact: npt.NDArray[Any], diagonal: float) -> ForceScale:

@@ -73,15 +73,18 @@ def follow_file(
     title: str,
     viewpoint: Viewpoint,
     save_to: Path | None,
+    copy: Path | None = None,
 ) -> None:
-    """Show a file's log in a window, or write the recording of it, as it grows."""
-    from lavendersim.trace import open_trace
+    """Show a file's log in a window, or write the recording of it, as it grows.
+
+    copy: of the log, that is ahead of it until it is whole.
+    """
 
     def opened() -> Trace | None:
-        try:
-            return open_trace(path, allow_incomplete=True)
-        except (TraceError, FileNotFoundError):  # it has not begun
-            return None
+        found = _whole_of(path)
+        if copy is not None and (found is None or found.damage):
+            return _whole_of(copy) or found
+        return found
 
     stream = new_stream(title)
     log = GrowingLog(opened, is_written)
@@ -96,6 +99,16 @@ def follow_file(
             stream.disconnect()  # writes the footer that readers look for
     finally:
         stream.disconnect()
+
+
+def _whole_of(path: Path) -> Trace | None:
+    """Return what is whole of a log by now; None where it has not begun."""
+    from lavendersim.trace import open_trace
+
+    try:
+        return open_trace(path, allow_incomplete=True)
+    except (TraceError, FileNotFoundError):
+        return None
 
 
 def _all_of(

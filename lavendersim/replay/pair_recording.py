@@ -22,7 +22,7 @@ import rerun.blueprint as rrb
 from lavendersim.replay import columns, scene
 from lavendersim.replay.blueprint import contents_of, curves_view, laid_out, scene_view
 from lavendersim.replay.camera import Camera, camera_of
-from lavendersim.replay.force_scale import ForceScale, force_scale
+from lavendersim.replay.force_scale import ForceScale, force_scale, scene_size
 from lavendersim.replay.layer import Layer
 from lavendersim.replay.pair import Distances, LogPair, distances_of
 from lavendersim.replay.viewpoint import Viewpoint
@@ -64,7 +64,7 @@ def record_pair(
     room = scene.Extent(
         np.min([one.low for one in rooms], axis=0), np.max([one.high for one in rooms], axis=0)
     )
-    scale = _common_scale(pair, room.diagonal)
+    scale = _common_scale(pair, scene_size(room.diagonal, bodies[A]))
     found = distances_of(pair)
     stream.send_recording_name(title)
     camera = camera_of(pair.a, bodies[A], room, viewpoint)
@@ -81,10 +81,10 @@ def _layers(pair: LogPair) -> list[tuple[Layer, Trace]]:
     return [(A, pair.a), (B, pair.b)]
 
 
-def _common_scale(pair: LogPair, diagonal: float) -> ForceScale | None:
+def _common_scale(pair: LogPair, size: float) -> ForceScale | None:
     """Return the scale of the log with the larger forces; None where nothing can touch."""
     scales = [
-        force_scale(columns.contacts_of(trace), diagonal)
+        force_scale(columns.contacts_of(trace), size)
         for _, trace in _layers(pair)
         if trace.has("/contacts")
     ]

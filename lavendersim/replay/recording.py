@@ -15,7 +15,7 @@ from lavendersim.errors import UsageError
 from lavendersim.replay import columns, scene
 from lavendersim.replay.blueprint import blueprint
 from lavendersim.replay.camera import camera_of
-from lavendersim.replay.force_scale import ForceScale, force_scale
+from lavendersim.replay.force_scale import ForceScale, force_scale, scene_size
 from lavendersim.replay.pair import LogPair
 from lavendersim.replay.pair_recording import record_pair
 from lavendersim.replay.viewpoint import DEFAULT_VIEW, Viewpoint
@@ -61,7 +61,9 @@ def measures_of(
     room = scene.extent(trace, bodies)
     # Where nothing can touch there are no contacts to place and no forces to scale.
     touching = trace.has("/contacts")
-    return room, force_scale(columns.contacts_of(trace), room.diagonal) if touching else None
+    if not touching:
+        return room, None
+    return room, force_scale(columns.contacts_of(trace), scene_size(room.diagonal, bodies))
 
 
 def write_rrd(

@@ -86,6 +86,7 @@ class CellJob(NamedTuple):
     measures: Mapping[str, MeasureSpec] = MappingProxyType({})
     cells: tuple[CellOfLog, ...] = ()  # that the log is measured for
     in_log: PlanInLog | None = None  # of the plan, where it is known; it is the same for many cells
+    copy: Path | None = None  # of the log, for who reads along
 
     def alone(self) -> CellJob:
         """Return this job without what its plan says of the other cells: they may be many."""
@@ -341,7 +342,7 @@ def _simulation(
     (engine, compile_ns), steps = ready, job.config.steps
     in_log = job.in_log or plan_in_log(job.plan)
     absent, metadata = in_log.absent, metadata_of(job, in_log)
-    writer = TraceWriter(job.path, job.config, job.as_written, metadata, absent)
+    writer = TraceWriter(job.path, job.config, job.as_written, metadata, absent, job.copy)
     yield None
     # A check finds in a run what it finds in its log.
     unseen = absent | partly_recorded(described(job.config.record))

@@ -282,6 +282,9 @@ def _run_cells(
     write_index(directory / CELLS, _index_of(experiment, pending, configs, ended))
     progress.began(directory)
     left = [job for path, job in by_log.items() if path not in ended]
+    first = bool(left) and left[0].path == pending[0].path
+    if first and isinstance(workers, int):  # of others nobody here reads along
+        left[0] = left[0]._replace(copy=progress.copy)
     try:  # what ends meanwhile is noted beside it: see `run_index`
         with handled():
             for path, outcome in ended.items():

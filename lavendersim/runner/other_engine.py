@@ -54,7 +54,7 @@ def simulate_elsewhere(
     if "/contacts" in absent:
         reported = ()
     metadata = metadata_of(engine, peer, reported, job.seeds)
-    writer = TraceWriter(job.path, config, job.as_written, metadata, absent)
+    writer = TraceWriter(job.path, config, job.as_written, metadata, absent, job.copy)
     unseen = absent | partly_recorded(described(config.record))
     bodies = list(config.scene.bodies)
     bounds = Bounds(job.always, bodies, config, config.clock, unseen)

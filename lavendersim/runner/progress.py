@@ -137,6 +137,7 @@ class Progress(NamedTuple):
     timing: Callable[[str, int, int], None] = lambda what, done, total: None
     warning: Callable[[str], None] = lambda sentence: None
     note: Callable[[str], None] = lambda sentence: None
+    copy: Path | None = None  # of the first cell's log, readable as it grows; of this machine alone
 
 
 def _duration(job: CellJob) -> float:

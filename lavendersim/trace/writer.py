@@ -125,9 +125,17 @@ class TraceWriter:
         as_written: str,
         metadata: Mapping[str, Mapping[str, str]],
         absent: Mapping[str, str] | None = None,
+        copy: Path | None = None,
     ) -> None:
-        """Open the file. absent: the topics that this log does without, each with the reason."""
+        """Open the file. absent: the topics that this log does without, each with the reason.
+
+        copy: another file, for who reads along: chunks close with their bytes, the first of a slow
+        scene after minutes. Those of the copy close with every block; it is left without an end.
+        """
         absent = dict(absent or {})
+        self._copy: TraceWriter | None = None
+        if copy is not None:
+            self._copy = TraceWriter(copy, config, as_written, metadata, absent)
         if unknown := absent.keys() - layout.CHANNELS.keys():
             raise ValueError(f"no topics of a log: {sorted(unknown)}")
         self._topics = layout.CHANNELS.keys() - absent.keys()
@@ -194,9 +202,19 @@ class TraceWriter:
             else:
                 self._close(*(name for name in BEFORE if last == getattr(ends, name)))
             first = last
+        if self._copy is not None:
+            self._copy.append(block)
+            self._copy.write_out()
+
+    def write_out(self) -> None:
+        """Close the open chunks, whatever they hold: all that came can be read from the file."""
+        self._close(*self._open)
+        self._queue.drain()
 
     def close(self, status: str) -> Written:
         """End the log; status is `complete`, or why the run ended early."""
+        if self._copy is not None:
+            self._copy.abandon()
         if sum(stream.size for stream in self._open.values()) > BULK_BYTES:
             self._close(*self._open)
         self._queue.drain()

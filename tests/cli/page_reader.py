@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 from html.parser import HTMLParser
@@ -53,16 +54,25 @@ class Page(HTMLParser):
 
 def opened_in_a_browser(page: Path, scratch: Path, width: int = 1200) -> Page:
     """Return what a browser makes of a page so many pixels wide; skips where there is none."""
+    return Page(_browse(page, scratch, f"--window-size={width},1400", "--dump-dom"))
+
+
+def sheets(page: Path, scratch: Path) -> int:
+    """Return how many sheets of paper a browser prints a page on; skips where there is none."""
+    _browse(page, scratch, f"--print-to-pdf={scratch / 'printed.pdf'}")
+    return len(re.findall(rb"/Type\s*/Page\b", (scratch / "printed.pdf").read_bytes()))
+
+
+def _browse(page: Path, scratch: Path, *options: str) -> str:
     found = [path for name in BROWSERS if (path := shutil.which(name))]
     if not found:
         pytest.skip(f"no browser here: none of {', '.join(BROWSERS)} is installed")
-    options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={scratch}"]
-    options.append(f"--window-size={width},1400")
+    always = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={scratch}"]
     done = subprocess.run(
-        [found[0], *options, "--dump-dom", page.as_uri()],
+        [found[0], *always, *options, page.as_uri()],
         capture_output=True,
         text=True,
         timeout=60,
         check=True,
     )
-    return Page(done.stdout)
+    return done.stdout

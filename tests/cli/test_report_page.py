@@ -11,7 +11,7 @@ from urllib.parse import unquote
 
 import pytest
 from command_line import lavender
-from page_reader import Page, opened_in_a_browser
+from page_reader import Page, opened_in_a_browser, sheets
 
 from tests.drop_config import DROP
 
@@ -146,3 +146,12 @@ def test_no_row_reaches_into_the_next(report: Path, tmp_path: Path, width: int) 
     page = opened_in_a_browser(copy, tmp_path / "browser", width)
     (body,) = (at for tag, at in page.seen if tag == "body")
     assert body["data-overlaps"] == "0"
+
+
+def test_what_is_folded_is_printed(report: Path, tmp_path: Path) -> None:
+    """Tables of claims take paper, of which a page with its `details` closed has none."""
+    text = report.read_text()
+    folded = tmp_path / "folded.html"
+    folded.write_text(re.sub(r"details\S*::details-content", "i", text))
+    assert folded.read_text() != text
+    assert sheets(report, tmp_path) > sheets(folded, tmp_path)

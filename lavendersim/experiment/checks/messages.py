@@ -151,19 +151,21 @@ def _sentence(
     if kind == "literal_error":
         return node.mark, f"{name}: {_choice(context['expected'], item['input'])}"
     form = _form(context["class_name"]) if kind == "model_type" else ""
+    if kind == NO_KIND and node.text and (meant := near(node.text, context["kinds"].split(", "))):
+        form = f"; write {{kind: {meant}, ...}}"  # the kind in place of what is of this kind
     return node.mark, f"{name}: {_expected(item, node)}{form}"
 
 
 def _form(model: str) -> str:
-    """Return the required keys of the mapping that a model is of, as they are written."""
+    """Return the mapping that a model is of as it is written: with what it requires, or most do."""
     classes = [ConfigModel]
     for one in classes:  # which grows meanwhile
         classes += one.__subclasses__()
-    meant = [one for one in classes if one.__name__ == model]
-    required = [
-        f"{key}: ..." for one in meant[:1] for key, at in fields(one).items() if at.is_required()
-    ]
-    return f"; write {{{', '.join(required)}}}" if len(required) > 1 else ""
+    for meant in [one for one in classes if one.__name__ == model][:1]:
+        required = [f"{key}: ..." for key, at in fields(meant).items() if at.is_required()]
+        if form := meant.FORM or ", ".join(required):
+            return f"; write {{{form}}}"
+    return ""
 
 
 def _choice(listed: str, value: Any) -> str:

@@ -124,6 +124,8 @@ class Reading:
             if kind == "plane":  # or may have been meant as one
                 known = [one for one in known if self._shape_of(one) not in SOLIDS]
             hint = nearest(name, known) or "; this file has none"
+            if kind == "surface" and not known:
+                hint += f": write surfaces: {{{name}: {{friction: ...}}}} into scene"
             return f"no {kind} is called {quoted(name)}{hint}"
         shape = self._shape_of(name) if kind == "plane" else None
         if shape in SOLIDS:

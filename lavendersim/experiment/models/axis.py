@@ -67,6 +67,8 @@ class Axis(ConfigModel):
         ("from", "to", "steps"), "write range: {from: ..., to: ..., steps: ...}"
     )
 
+    FORM: ClassVar[str] = "path: ..., values: [...]"
+
     path: str | None = Field(
         default=None, description="such as scene.bodies.ball.mass or numerics.timestep"
     )

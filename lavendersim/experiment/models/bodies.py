@@ -10,7 +10,7 @@ from pydantic import Field
 from lavendersim.cell.body import Release
 from lavendersim.cell.surface import Surface
 from lavendersim.engine.effects import BODY_KEYS, MOTION_KEYS
-from lavendersim.experiment.models.shapes import SOLIDS, TURNED, Orientation, Shape, Solid
+from lavendersim.experiment.models.shapes import SIMPLE, SOLIDS, TURNED, Orientation, Shape, Solid
 from lavendersim.experiment.models.tree import PRESCRIBE_MOTION
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.chosen_kind import ByKind
@@ -79,8 +79,16 @@ class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: i
     """What bodies have in common, whether they stand alone or are arranged."""
 
     MISPLACED: ClassVar[Mapping[str, str]] = {
-        key: f"write surface: {{{key}: ...}}" for key in Surface.model_fields
+        **{key: f"write surface: {{{key}: ...}}" for key in Surface.model_fields},
+        **{
+            key: f"write shape: {{kind: ..., {key}: ...}}"
+            for model in SIMPLE
+            for key in model.model_fields
+            if key != "kind"
+        },
     }
+
+    FORM: ClassVar[str] = "shape: {kind: ...}, ..."
 
     @classmethod
     def rules(cls, at: Place) -> None:

@@ -11,7 +11,7 @@ from lavendersim.errors import NotReportedError
 from lavendersim.figures.drawing import draw_ideal
 from lavendersim.figures.ideal import ideal_of
 from lavendersim.figures.registration import draws
-from lavendersim.figures.series import looks_of, series_of, within
+from lavendersim.figures.series import axis_of, looks_of, series_of, within
 from lavendersim.figures.specs.time_series import OF_STEPS, POSITIONS, SPEEDS, TimeSeries
 from lavendersim.measures.columns import (
     clearance_by_step,
@@ -35,7 +35,7 @@ def draw_panel(
     axes: Any, panel: TimeSeries, cells: Sequence[Cell], values: Values, experiment: Any
 ) -> None:
     """Draw one panel onto the axes."""
-    all_series = series_of(cells, panel.series, panel.series_label)
+    all_series = series_of(cells, panel.series or axis_of(cells), panel.series_label)
     looks = looks_of(all_series)
     for index, series in enumerate(all_series):
         for number, cell in enumerate(series.cells):

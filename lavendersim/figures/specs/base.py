@@ -39,7 +39,9 @@ class Panel(Reader):
     y_scale: Scale = Field(default="linear", description="linear or log")
     at: Selection = Field(default_factory=dict, description="the cells shown; all when absent")
     series: AxisName | None = Field(
-        default=None, description="one colour and marker per value of this axis"
+        default=None,
+        description="one colour and marker per value of this axis; of time series, where cells "
+        "differ by one axis, that",
     )
     series_label: str = Field(
         default="", description="legend entry, {} stands for the value: `timestep {} s`"

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from lavendersim.figures.series import (
+    axis_of,
     band_along,
     band_of_rows,
     by_value,
@@ -43,6 +44,15 @@ def test_a_label_of_ones_own_and_cells_without_the_axis() -> None:
     (whole,) = series_of(CELLS, None)
     assert whole.cells == CELLS
     assert series_of([], None) == []
+
+
+def test_cells_differ_by_one_axis_or_by_none_that_could_be_named() -> None:
+    swept = [cell(e=0.5, mass=1), cell(e=0.9, mass=1)]
+    assert axis_of(swept) == "e"
+    assert axis_of(swept[:1]) is None
+    assert axis_of([*swept, cell(e=0.5, mass=2)]) is None
+    assert axis_of([*swept, cell(mass=1)]) is None  # of another product
+    assert axis_of([]) is None
 
 
 def test_a_damaged_log_is_marked() -> None:

@@ -129,3 +129,11 @@ def test_what_has_a_form_is_refused_as_that_alone() -> None:
     with pytest.raises(ValidationError) as refused:
         FORMS.validate_python({"one": "x"})
     assert [error["type"] for error in refused.value.errors()] == ["float_parsing"]
+
+
+@pytest.mark.parametrize(
+    ("value", "form"),
+    [(2.0, "[..., ..., ...]"), ({"x": 1, "y": 2, "z": 3}, "[x, y, z]")],
+)
+def test_what_is_no_list_of_components_is_written_as_one(value: object, form: str) -> None:
+    assert errors(place=value)[0][1].endswith(f"; write {form}")

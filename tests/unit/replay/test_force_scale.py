@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from synthetic_trace import CONTACT_FIELDS
 
-from lavendersim.replay.force_scale import TYPICAL_LENGTH, force_scale
+from lavendersim.replay.force_scale import TYPICAL_LENGTH, force_scale, scene_size
 
 
 def contacts(steps, forces):
@@ -70,3 +72,12 @@ def test_contacts_without_features_are_taken_by_pairs():
     rows = contacts(range(1, 101), [9.81] * 100)
     without = [name for name in rows.dtype.names if name != "feature"]
     assert force_scale(rows[without], 1.0) == force_scale(rows, 1.0)
+
+
+def test_small_bodies_in_a_large_room_are_not_hidden_by_arrows():
+    """Of balls of 56 mm on a table of 3 m arrows are a share of 16 balls, not of the table."""
+    ball = SimpleNamespace(bounding_radius=0.028, fixed=False)
+    table = SimpleNamespace(bounding_radius=2.0, fixed=True)
+    assert scene_size(3.3, [ball] * 15 + [table]) == pytest.approx(16 * 0.056)
+    assert scene_size(0.3, [ball] * 15 + [table]) == 0.3
+    assert scene_size(0.3, [table]) == 0.3

@@ -13,7 +13,8 @@ from lavendersim.errors import TraceError
 from lavendersim.replay import columns, live
 from lavendersim.replay.recording import new_stream
 from lavendersim.runner import run
-from lavendersim.trace import open_trace
+from lavendersim.runner.progress import Progress
+from lavendersim.trace import TraceWriter, open_trace
 
 # A ball that falls 5 m and bounces: room and forces grow while it is shown.
 THROWN = """\
@@ -107,3 +108,29 @@ def test_a_whole_log_is_shown_once(whole, tmp_path):
     live.follow_file(whole, lambda: True, "whole", live.DEFAULT_VIEW, tmp_path / "a.rrd")
     rows = sum(batch.num_rows for batch in read(tmp_path / "a.rrd")[0]["/bodies/ball"])
     assert rows == len(open_trace(whole).step)
+
+
+def test_the_copy_of_a_log_is_readable_as_it_is_written(whole, tmp_path, monkeypatch):
+    """The log of this run has all its steps in chunks that close as it ends."""
+    copy, read_along = tmp_path / "copy.mcap", []
+    write_out = TraceWriter.write_out
+
+    def noted(writer):
+        write_out(writer)
+        (log,) = tmp_path.glob("runs/*/cells/*.mcap")
+        of_log = live._whole_of(log)
+        read_along.append((len(live._whole_of(copy).step), len(of_log.step) if of_log else 0))
+
+    monkeypatch.setattr(TraceWriter, "write_out", noted)
+    config = tmp_path / "thrown.yaml"
+    config.write_text(THROWN)
+    (cell,) = run(config, tmp_path / "runs", 1, Progress(copy=copy)).run.cells
+    assert cell.path.read_bytes() == whole.read_bytes()
+    copied, rows = open_trace(copy, allow_incomplete=True), open_trace(whole)
+    for name in ("step", "contact", "pose"):
+        assert np.array_equal(getattr(copied, name), getattr(rows, name))
+    steps = [copied for copied, _ in read_along]
+    assert steps == sorted(set(steps))
+    assert steps[-1] == len(rows.step)
+    assert len(steps) > 2
+    assert all(of_log < copied for copied, of_log in read_along)

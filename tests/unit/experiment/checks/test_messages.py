@@ -78,7 +78,11 @@ def said(marked: str) -> tuple[list[str], list[str]]:
         ("shape: {kind: §3}", "kind: expected one of round, square, found 3"),
         ("shape: {kind: §rount}", 'unknown kind "rount" in shape; did you mean "round"?'),
         ("shape: §{kind: round}", 'missing key "radius" in shape: [m] of it'),
-        ("inner: §3", "inner: expected a mapping, found 3"),
+        ("inner: §3", "inner: expected a mapping, found 3; write {kind: ...}"),
+        (
+            "shape: §rount",
+            'shape: expected a mapping, found the text "rount"; write {kind: round, ...}',
+        ),
     ],
 )
 def test_every_kind_of_error_is_a_sentence_at_its_place(marked: str, sentence: str) -> None:
@@ -126,4 +130,42 @@ def test_a_list_in_place_of_a_mapping_gets_the_keys_of_the_mapping() -> None:
     assert_refused(
         config(sweep=sweep),
         "range: expected a mapping, found a list of 3; write {from: ..., to: ..., steps: ...}",
+    )
+
+
+@pytest.mark.parametrize(
+    ("body", "hint"),
+    [
+        (
+            "§plane",
+            'floor: expected a mapping, found the text "plane"; write {shape: {kind: ...}, ...}',
+        ),
+        (
+            "{shape: §plane}",
+            'shape: expected a mapping, found the text "plane"; write {kind: plane, ...}',
+        ),
+        (
+            "{shape: {kind: plane}, §radius: 1}",
+            'unknown key "radius" in scene.bodies.floor; write shape: {kind: ..., radius: ...}',
+        ),
+        (
+            "{shape: {kind: plane, normal: §-z}}",
+            'normal: expected a list of 3 numbers, found the text "-z"; write [0, 0, -1]',
+        ),
+        (
+            "{shape: {kind: plane}, fixed: true, surface: §ice}",
+            'surface: no surface is called "ice"; this file has none: '
+            "write surfaces: {ice: {friction: ...}} into scene",
+        ),
+    ],
+)
+def test_what_a_body_was_to_be_is_written_out(body: str, hint: str) -> None:
+    ball = "{shape: {kind: sphere, radius: 1}, mass: 1, position: [0, 0, 1]}"
+    assert_refused(f"scene: {{bodies: {{ball: {ball}, floor: {body}}}}}\nduration: 1\n", hint)
+
+
+def test_an_axis_that_is_a_list_of_values_lacks_its_path() -> None:
+    assert_refused(
+        config(sweep="{mass: §[1, 2]}"),
+        "mass: expected a mapping, found a list of 2; write {path: ..., values: [...]}",
     )
