@@ -12,6 +12,7 @@ from typing import Any
 
 from .block import make_relative_velocity, make_slip_velocity
 from .collide.records import UNBOUNDED
+from .collide.shapes import make_is_inside
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
@@ -98,13 +99,15 @@ def make_is_turning(spec: Spec) -> Any:
 
 
 def make_lasting(spec: Spec) -> Any:
-    """Return `kernel(contact, velocities, motion, params)`, of a row completed at the start.
+    """Return `kernel(contact, pair, velocities, motion, params)`, of a row completed at the start.
 
     Whether it lasts, by how fast its surfaces approach before forces act. velocities: after them.
     """
     friction = row_terms(spec).frictional
     springs, spring_row = made_once(spec, "spring_row")
     ropes, bilateral = row_terms(spec).taut, row_terms(spec).bilateral
+    is_inside = make_is_inside(spec)
+    inside = is_inside is not None
     turns, normal_velocity = step_terms(spec).turns, make_normal_velocity(spec)
 
     def is_twisted(v, m):
@@ -112,7 +115,7 @@ def make_lasting(spec: Spec) -> Any:
 
     twisted: Any = kernel(is_twisted, spec) if turns else None
 
-    def lasting(contact, velocities, motion, params):
+    def lasting(contact, pair, velocities, motion, params):
         contact.begin_n = contact.v_n_pre - contact.dv_n
         if turns:
             a, b = contact.a, contact.b
@@ -129,6 +132,9 @@ def make_lasting(spec: Spec) -> Any:
         if ropes:
             if contact.span > 0.0:  # its ends swing by as much to either side of its length
                 closes = opens = FORCED * contact.stirred + CALM
+        if inside:
+            if is_inside(pair.kind):  # its wall turns back what parts so slowly
+                opens = FORCED * forced + CALM
         calm = -closes <= contact.begin_n <= opens
         contact.lasts, contact.jumps = 1 if closed and calm else 0, 0
         if springs:
@@ -279,7 +285,7 @@ def make_resist(spec: Spec) -> Any:
 
 
 def make_shift(spec: Spec) -> Any:
-    """Return `kernel(contact, lead, motion, params)`, of a row at the middle: b, where it lasts."""
+    """Return `kernel(contact, pair, lead, motion, params)`, of a row at the middle: b if it lasts."""
     terms = row_terms(spec)
     friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")
@@ -289,8 +295,10 @@ def make_shift(spec: Spec) -> Any:
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)
     is_unparted: Any = make_is_unparted(spec) if bilateral else None
+    is_inside = make_is_inside(spec)
+    inside = is_inside is not None
 
-    def shift(contact, lead, motion, params):
+    def shift(contact, pair, lead, motion, params):
         la, lb = lead[contact.a], lead[contact.b]
         contact.middle_n = normal_velocity(contact, la, lb)
         if bilateral:
@@ -322,6 +330,9 @@ def make_shift(spec: Spec) -> Any:
             # What its ends approach by is no mode to damp: it is what keeps length and energy.
             if contact.span > 0.0:
                 kept = 0.0
+        if inside:
+            if is_inside(pair.kind):  # as of a rope
+                kept = 0.0
         b = contact.middle_n - kept
         ajar = max(contact.phi - params.slop, 0.0)
         forced = abs(contact.dv_n) * params.timestep / params.dt
@@ -335,6 +346,9 @@ def make_shift(spec: Spec) -> Any:
         if ropes:
             if contact.span > 0.0:
                 closes = opens = FORCED * contact.stirred + turned
+        if inside:
+            if is_inside(pair.kind):
+                opens = FORCED * forced + turned
         calm = -closes <= contact.begin_n <= opens
         if not soft and (not calm or ajar > AJAR * params.dt * abs(b)):
             return

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from lavendersim.cell import CellBody, Plane
+from lavendersim.cell import Cavity, CellBody, Plane
 from lavendersim.cell.shapes import CellSimple
 from lavendersim.engine.effects import holding
 from lavendersim.errors import Defect
@@ -80,7 +80,9 @@ def _defect(cell: Cell, name: str, sentence: str) -> Defect:
 
 
 def _parts(bodies: dict[str, CellBody]) -> Parts:
-    solids = {name: body for name, body in bodies.items() if not isinstance(body.shape, Plane)}
+    solids = {
+        name: body for name, body in bodies.items() if not isinstance(body.shape, Plane | Cavity)
+    }
     centres = np.array([body.position for body in solids.values()]).reshape(-1, 3)
     turns = rotation_matrices(
         np.array([body.orientation for body in solids.values()]).reshape(-1, 4)

@@ -1,0 +1,25 @@
+"""Manifold of a cavity A and a convex hull B: its corners that are near the wall, all of them.
+
+The feature of a point is its corner, counted in its hull.
+"""
+
+from __future__ import annotations
+
+from ...compile import kernel
+from ...vectors import from_body, plus, position, vector_at
+from ..manifold.cavity_points import make_put_point
+
+
+def make(spec):
+    """Return `kernel(cavity, hull, margin, scratch) -> count`, which writes `scratch.manifold`."""
+    put_point = make_put_point(spec)
+
+    def hull_cavity(cavity, hull, margin, scratch):
+        hulls, count = scratch.hulls, 0
+        first, last = hulls.vertex_start[hull.hull], hulls.vertex_start[hull.hull + 1]
+        for v in range(first, last):
+            p = plus(position(hull), from_body(hull, vector_at(hulls.vertices, v)))
+            count = put_point(cavity, p, 0.0, margin, scratch.manifold, count, v - first)
+        return count
+
+    return kernel(hull_cavity, spec)

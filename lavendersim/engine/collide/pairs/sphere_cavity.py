@@ -1,0 +1,17 @@
+"""Manifold of a cavity A and a sphere B: at most one point, in closed form (`cavity_points`)."""
+
+from __future__ import annotations
+
+from ...compile import kernel
+from ...vectors import position
+from ..manifold.cavity_points import make_put_point
+
+
+def make(spec):
+    """Return `kernel(cavity, sphere, margin, scratch) -> count`; it writes `scratch.manifold`."""
+    put_point = make_put_point(spec)
+
+    def sphere_cavity(cavity, sphere, margin, scratch):
+        return put_point(cavity, position(sphere), sphere.hx, margin, scratch.manifold, 0, 0)
+
+    return kernel(sphere_cavity, spec)
