@@ -1,12 +1,13 @@
 """How the gap of a body inside a cavity closes in free flight, since the wall curves towards it.
 
-A point that flies at v from rho off the centre, or the axis, meets the wall of radius R = rho + g at
+A point that flies at v from rho off the centre or the axis meets the wall, R = rho + g, at
 
     |d + v t| = R:   T = (rho v_n + sqrt((rho v_n)^2 + |v|^2 (R^2 - rho^2))) / |v|^2
 
-v_n: rate of its gap g. What is foreseen reckons with a constant acceleration of the gap: the one that
-closes it at T, or where that is after the part the one at its start, -(|v|^2 - v_n^2) / R.
-The point is the centre of a ball or of a capsule's end, a corner, or what of a round side is nearest.
+v_n: rate of its gap g. What is foreseen reckons with a constant acceleration of the gap: the one
+that closes it at T, or where that is after the part the one at its start, -(|v|^2 - v_n^2) / R.
+The point is the centre of a ball or of a capsule's end, a corner, or what of a round side is
+nearest.
 """
 
 from __future__ import annotations

@@ -285,7 +285,7 @@ def make_resist(spec: Spec) -> Any:
 
 
 def make_shift(spec: Spec) -> Any:
-    """Return `kernel(contact, pair, lead, motion, params)`, of a row at the middle: b if it lasts."""
+    """Return `kernel(contact, pair, lead, motion, params)`, of a row at the middle: its b."""
     terms = row_terms(spec)
     friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")

@@ -6,7 +6,7 @@ has no mass; it stands still, or its motion is prescribed.
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
@@ -17,7 +17,8 @@ from lavendersim.quantities.model import ConfigModel
 class Cavity(ConfigModel):
     """What bowls and drums have in common."""
 
-    ROUND_ABOUT: ClassVar[str]  # what its radius is counted from
+    if TYPE_CHECKING:
+        kind: str
 
     radius: Length = Field(description="[m] from the centre or the axis to the surface")
 
@@ -25,14 +26,10 @@ class Cavity(ConfigModel):
 class Bowl(Cavity):
     """The inside of a sphere: all that is farther from its centre than the radius is solid."""
 
-    ROUND_ABOUT: ClassVar[str] = "centre"
-
     kind: Literal["bowl"]
 
 
 class Drum(Cavity):
     """The inside of a cylinder without ends: all that is farther from the body's z is solid."""
-
-    ROUND_ABOUT: ClassVar[str] = "axis"
 
     kind: Literal["drum"]

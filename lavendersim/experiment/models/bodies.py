@@ -196,9 +196,9 @@ def _cavity_rules(at: Place, kind: str) -> None:
             "position", "[m] of its centre" if kind == "bowl" else "[m] of a point of its axis"
         )
     constrained = [key for key in _CONSTRAIN if at.get(key).is_true]
-    always = f"a {kind} is fixed, or its motion is prescribed"
+    always = f"a {kind}, which is fixed or has its motion prescribed"
     if at.get("fixed").content is False:
-        at.refuse(at.get("fixed").mark, f"fixed: {at} is a {kind}; {always}")
+        at.refuse(at.get("fixed").mark, f"fixed: {at} is {always}")
     if len(constrained) > 1:
         at.refuse_both(constrained[:2])
     elif constrained and constrained[0] != "fixed":
@@ -208,8 +208,7 @@ def _cavity_rules(at: Place, kind: str) -> None:
             words = " or ".join(f"{word}: true" for word in PRESCRIBE_MOTION)
             at.refuse(mark, f"{key}: {at} is fixed, as a {kind} is; expected {words} beside it")
     for key, mark in at.given((*_OF_MOVABLE, "release")):
-        has = f"a {kind} has no {key.replace('_', ' ')}"
-        at.refuse(mark, f"{key}: {at} is a {kind}; {has}: {always}")
+        at.refuse(mark, f"{key}: {at} is {always}; it has no {key.replace('_', ' ')}")
 
 
 def _exactly_one(at: Place, keys: tuple[str, str], meaning: str) -> None:

@@ -19,6 +19,7 @@ from lavendersim.experiment.models.tree import (
     member_name,
 )
 from lavendersim.experiment.resolve.arrangements import centres, turns_of
+from lavendersim.experiment.resolve.cavities import refuse_what_does_not_fit
 from lavendersim.experiment.resolve.frames import Frames
 from lavendersim.experiment.resolve.gravity import gravity_vector
 from lavendersim.experiment.resolve.placement import below, released_position
@@ -116,6 +117,8 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> dict[str, Any]:
     else:
         with below("shape"):
             shape, volume, (x, y, z), axes = resolve_shape(body.shape)
+            if not fixed:
+                refuse_what_does_not_fit(shape, scene)
         if axes != IDENTITY:
             orientation = product(orientation, axes)
         if not fixed:

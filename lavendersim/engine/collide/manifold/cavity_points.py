@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...compile import kernel
+from ...compile import kernel, once
 from ...records import DRUM
 from ...spec import Spec
 from ...vectors import Vec3, dot, length, minus, plus_scaled, position, scaled
@@ -27,6 +27,7 @@ from .point import place, put_manifold_normal
 NO_DIRECTION = 1e-12
 
 
+@once
 def make_axis(spec: Spec) -> Any:
     """Return `kernel(cavity) -> unit vector` along the axis of a drum; of a bowl 0."""
     drums = has_drum(spec)
@@ -41,6 +42,7 @@ def make_axis(spec: Spec) -> Any:
     return kernel(axis_of, spec)
 
 
+@once
 def make_from_centre(spec: Spec) -> Any:
     """Return `kernel(cavity, p) -> d`: of a point of the world [m]."""
     axis_of = make_axis(spec)
@@ -52,6 +54,7 @@ def make_from_centre(spec: Spec) -> Any:
     return kernel(from_centre, spec)
 
 
+@once
 def make_put_point(spec: Spec) -> Any:
     """Return `kernel(cavity, p, r, margin, manifold, count, feature) -> count`, one more if near.
 

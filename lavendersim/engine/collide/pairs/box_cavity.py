@@ -5,11 +5,12 @@ The feature of a point is its corner, bit 0, 1, 2 set where the corner lies at +
 
 from __future__ import annotations
 
-from ...compile import kernel
+from ...compile import kernel, once
 from ...vectors import Vec3, from_body, plus, position
 from ..manifold.cavity_points import make_put_point
 
 
+@once
 def make(spec):
     """Return `kernel(cavity, box, margin, scratch) -> count`, which writes `scratch.manifold`."""
     put_point = make_put_point(spec)

@@ -5,11 +5,12 @@ The feature of a point is the end: 0 at -z, 1 at +z of the capsule's frame.
 
 from __future__ import annotations
 
-from ...compile import kernel
+from ...compile import kernel, once
 from ...vectors import Vec3, plus_scaled, position
 from ..manifold.cavity_points import make_put_point
 
 
+@once
 def make(spec):
     """Return `kernel(cavity, capsule, margin, scratch) -> count`; it writes `scratch.manifold`."""
     put_point = make_put_point(spec)

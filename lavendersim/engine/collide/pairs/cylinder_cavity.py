@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from ...compile import kernel
+from ...compile import kernel, once
 from ...records import BOWL
 from ...vectors import Vec3, cross, dot, length, plus_scaled, position, scaled
 from ..manifold.cavity_points import make_axis, make_from_centre, make_put_point
@@ -29,6 +29,7 @@ CONVERGED = 1e-15  # [rad]
 DISTINCT = 1e-9
 
 
+@once
 def make_put_lowest(spec):
     """Return `kernel(drum, rim, r, e1, e2, margin, manifold, count, feature) -> count`.
 
@@ -74,6 +75,7 @@ def make_put_lowest(spec):
     return kernel(put_lowest, spec)
 
 
+@once
 def make(spec):
     """Return `kernel(cavity, cylinder, margin, scratch) -> count`; it writes `scratch.manifold`."""
     axis_of, from_centre = make_axis(spec), make_from_centre(spec)

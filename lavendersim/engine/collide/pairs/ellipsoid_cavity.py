@@ -11,7 +11,7 @@ configs are checked for: where it touches, s - K is then positive, and the point
 
 from __future__ import annotations
 
-from ...compile import kernel
+from ...compile import kernel, once
 from ...vectors import (
     Vec3,
     across,
@@ -32,6 +32,7 @@ NEWTON_STEPS = 64
 CONVERGED = 1e-15  # [rad]
 
 
+@once
 def make(spec):
     """Return `kernel(cavity, ellipsoid, margin, scratch) -> count`; writes `scratch.manifold`."""
     axis_of, from_centre = make_axis(spec), make_from_centre(spec)

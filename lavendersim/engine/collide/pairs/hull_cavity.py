@@ -5,11 +5,12 @@ The feature of a point is its corner, counted in its hull.
 
 from __future__ import annotations
 
-from ...compile import kernel
+from ...compile import kernel, once
 from ...vectors import from_body, plus, position, vector_at
 from ..manifold.cavity_points import make_put_point
 
 
+@once
 def make(spec):
     """Return `kernel(cavity, hull, margin, scratch) -> count`, which writes `scratch.manifold`."""
     put_point = make_put_point(spec)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from ...compile import kernel
+from ...compile import kernel, once
 from ...vectors import position
 from ..manifold.cavity_points import make_put_point
 
 
+@once
 def make(spec):
     """Return `kernel(cavity, sphere, margin, scratch) -> count`; it writes `scratch.manifold`."""
     put_point = make_put_point(spec)
