@@ -89,8 +89,7 @@ def make_foresee(spec: Spec) -> Any:
     draws, is_drawn = made_once(spec, "is_drawn")
     overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
     acceleration_of_rope: Any = make_gap_acceleration_of_rope(spec) if ropes else None
-    is_inside = make_is_inside(spec)
-    cavities = is_inside is not None
+    cavities, is_inside = make_is_inside(spec)
     closing: Any = make_closing(spec) if cavities else None
 
     def foresee(contact, pair, bodies, motion, params, met):

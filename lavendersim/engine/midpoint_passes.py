@@ -14,6 +14,7 @@ from .compile import either, greatest, kernel
 from .contact import make_apply_start
 from .contact_spring_law import make_linearise
 from .effects import has_hook, made_by, made_once
+from .free_flight import make_widen
 from .midpoint_geometry import (
     make_keep_start,
     make_look,
@@ -31,7 +32,6 @@ from .midpoint_rows import (
     make_lasting,
     make_resist,
     make_shift,
-    make_widen,
 )
 from .parts import make_forget_history
 from .residual import make_residual

@@ -16,7 +16,6 @@ from .collide.shapes import make_is_inside
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
-from .free_flight import target_of_flight
 from .joint_turn import make_joint_velocity
 from .records import PLANE
 from .row_terms import row_terms
@@ -106,8 +105,7 @@ def make_lasting(spec: Spec) -> Any:
     friction = row_terms(spec).frictional
     springs, spring_row = made_once(spec, "spring_row")
     ropes, bilateral = row_terms(spec).taut, row_terms(spec).bilateral
-    is_inside = make_is_inside(spec)
-    inside = is_inside is not None
+    inside, is_inside = make_is_inside(spec)
     turns, normal_velocity = step_terms(spec).turns, make_normal_velocity(spec)
 
     def is_twisted(v, m):
@@ -295,8 +293,7 @@ def make_shift(spec: Spec) -> Any:
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)
     is_unparted: Any = make_is_unparted(spec) if bilateral else None
-    is_inside = make_is_inside(spec)
-    inside = is_inside is not None
+    inside, is_inside = make_is_inside(spec)
 
     def shift(contact, pair, lead, motion, params):
         la, lb = lead[contact.a], lead[contact.b]
@@ -382,26 +379,3 @@ def make_shift(spec: Spec) -> Any:
                 contact.surface_2 += two
 
     return kernel(shift, spec)
-
-
-def make_widen(spec: Spec) -> Any:
-    """Return `kernel(contact, params)`, of a row at the start with a gap: by what turning opens it.
-
-    The gap at the end is phi + dt (n . J(q_0) v + b), v: v_1, or of what flies the mean. Surfaces
-    that curve away from each other may come nearer by their rate at the start and yet not meet.
-    """
-
-    bilateral = row_terms(spec).bilateral
-
-    def widen(contact, params):
-        if bilateral:
-            if contact.bilateral == 1:
-                return
-        opens = contact.middle_n - contact.begin_n
-        if contact.phi > params.slop and opens > 0.0:
-            mean = contact.v_n_pre - 0.5 * contact.dv_n
-            if contact.phi + (mean + opens) * params.dt > -params.slop:
-                contact.target = max(contact.target, target_of_flight(contact.v_n_pre))
-            contact.target += opens
-
-    return kernel(widen, spec)

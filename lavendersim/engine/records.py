@@ -30,6 +30,7 @@ COMPOUND: Final = 6
 ELLIPSOID: Final = 7
 BOWL: Final = 8
 DRUM: Final = 9
+CAVITIES: Final = frozenset({"bowl", "drum"})  # shapes that other bodies are inside of
 ROPE_END: Final = -1  # where a rope or a joint is on a body: `collide.rope`, `collide.joint`
 
 # PAIR.kind of what no two shapes are: those of shapes are 0 and more, those of joints less than -2.

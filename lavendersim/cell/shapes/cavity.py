@@ -6,7 +6,7 @@ has no mass; it stands still, or its motion is prescribed.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field
 
@@ -17,6 +17,10 @@ from lavendersim.quantities.model import ConfigModel
 class Cavity(ConfigModel):
     """What bowls and drums have in common."""
 
+    # Shapes of which a file of `engine/collide/pairs` says where they touch it.
+    HOLDS: ClassVar[frozenset[str]] = frozenset(
+        {"sphere", "box", "capsule", "cylinder", "ellipsoid", "hull"}
+    )
     if TYPE_CHECKING:
         kind: str
 

@@ -15,7 +15,7 @@ the start of a step does: up to m |g| dt times the speed in every bounce (`measu
 
 from math import hypot, inf, sqrt
 
-from ..collide.shapes import CAVITIES
+from ..records import CAVITIES
 from ..terms import RowTerms
 from .decision import BodyFacts, Decision, Facts, meeting
 from .effect import Column, Effect, Fields, Hooks, kernel

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from lavendersim.cell.shapes import Cavity, CellCompound, CellShape, Convex, Ellipsoid
-from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.experiment.models.scene import Scene
 from lavendersim.experiment.resolve.placement import SceneError
 
@@ -31,10 +30,9 @@ def _solids(shape: CellShape) -> Iterator[Convex]:
 
 def _refuse_in(shape: Convex, name: str, cavity: Cavity) -> None:
     radius = cavity.radius
-    if not any(pair.shapes == (cavity.kind, shape.kind) for pair in SHAPE_PAIRS.values()):
-        raise SceneError(
-            (), f"no kernel finds where a {shape.kind} touches {name}, a {cavity.kind}"
-        )
+    if shape.kind not in cavity.HOLDS:
+        what = f"a {shape.kind} touches {name}, a {cavity.kind}"
+        raise SceneError((), f"no file of engine/collide/pairs says where {what}")
     if shape.thickness() >= 2.0 * radius:
         raise SceneError(
             (),

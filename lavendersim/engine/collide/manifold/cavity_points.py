@@ -13,7 +13,7 @@ wall is the one that is farthest from c: an end of a capsule, a corner, a point 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...compile import kernel, once
 from ...records import DRUM
@@ -25,6 +25,14 @@ from .point import place, put_manifold_normal
 
 # What is nearer to the centre or the axis has no direction from it, in radii of the cavity [-].
 NO_DIRECTION = 1e-12
+
+
+class CorePoint(NamedTuple):
+    """A point of a body's core that may be the farthest."""
+
+    p: Vec3  # world frame [m]
+    r: float  # radius that it is grown by [m]
+    feature: int
 
 
 @once
@@ -56,13 +64,11 @@ def make_from_centre(spec: Spec) -> Any:
 
 @once
 def make_put_point(spec: Spec) -> Any:
-    """Return `kernel(cavity, p, r, margin, manifold, count, feature) -> count`, one more if near.
-
-    p: a point of the body's core, world frame [m]; r: the radius that it is grown by [m].
-    """
+    """Return `kernel(cavity, core, margin, manifold, count) -> count`, one more if near."""
     from_centre, drums = make_from_centre(spec), has_drum(spec)
 
-    def put_point(cavity, p, r, margin, manifold, count, feature):
+    def put_point(cavity, core, margin, manifold, count):
+        p, r, feature = core.p, core.r, core.feature
         d = from_centre(cavity, p)
         far = length(d)
         phi = cavity.hx - far - r

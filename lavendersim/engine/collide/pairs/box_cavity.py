@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from ...compile import kernel, once
 from ...vectors import Vec3, from_body, plus, position
-from ..manifold.cavity_points import make_put_point
+from ..manifold.cavity_points import CorePoint, make_put_point
 
 
 @once
@@ -24,7 +24,8 @@ def make(spec):
                 box.hz if corner & 4 else -box.hz,
             )
             p = plus(position(box), from_body(box, c))
-            count = put_point(cavity, p, 0.0, margin, scratch.manifold, count, corner)
+            core = CorePoint(p, 0.0, corner)
+            count = put_point(cavity, core, margin, scratch.manifold, count)
         return count
 
     return kernel(box_cavity, spec)

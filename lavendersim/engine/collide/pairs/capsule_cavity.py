@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from ...compile import kernel, once
 from ...vectors import Vec3, plus_scaled, position
-from ..manifold.cavity_points import make_put_point
+from ..manifold.cavity_points import CorePoint, make_put_point
 
 
 @once
@@ -20,7 +20,8 @@ def make(spec):
         for end in range(2):
             along = capsule.hz if end else -capsule.hz
             p = plus_scaled(position(capsule), along, axis)
-            count = put_point(cavity, p, capsule.hx, margin, scratch.manifold, count, end)
+            core = CorePoint(p, capsule.hx, end)
+            count = put_point(cavity, core, margin, scratch.manifold, count)
         return count
 
     return kernel(capsule_cavity, spec)

@@ -14,11 +14,12 @@ The features: RIM times the end (0 at -z, 1 at +z), and the point of the rim, in
 from __future__ import annotations
 
 from math import cos, pi, sin
+from typing import NamedTuple
 
-from ...compile import kernel, once
+from ...compile import inner, kernel, once
 from ...records import BOWL
 from ...vectors import Vec3, cross, dot, length, plus_scaled, position, scaled
-from ..manifold.cavity_points import make_axis, make_from_centre, make_put_point
+from ..manifold.cavity_points import CorePoint, make_axis, make_from_centre, make_put_point
 
 RIM = 16
 QUARTERS = 4
@@ -29,12 +30,25 @@ CONVERGED = 1e-15  # [rad]
 DISTINCT = 1e-9
 
 
+class Rim(NamedTuple):
+    """A circle, by its centre, world frame, its radius [m] and unit vectors across its axis."""
+
+    centre: Vec3
+    r: float
+    e1: Vec3
+    e2: Vec3
+    feature: int  # the name of its first point
+
+
+@inner
+def point_of(rim, t):
+    """Return the point at an angle from e1."""
+    return plus_scaled(plus_scaled(rim.centre, rim.r * cos(t), rim.e1), rim.r * sin(t), rim.e2)
+
+
 @once
 def make_put_lowest(spec):
-    """Return `kernel(drum, rim, r, e1, e2, margin, manifold, count, feature) -> count`.
-
-    rim: centre of the rim, world frame [m]; e1, e2: across its axis, e1 across the drum's, too.
-    """
+    """Return `kernel(drum, rim, margin, manifold, count) -> count`; e1 is across its axis, too."""
     axis_of, from_centre = make_axis(spec), make_from_centre(spec)
     put_point = make_put_point(spec)
 
@@ -44,8 +58,9 @@ def make_put_lowest(spec):
 
     squared = kernel(squared, spec)
 
-    def put_lowest(drum, rim, r, e1, e2, margin, manifold, count, feature):
-        axis, q = axis_of(drum), from_centre(drum, rim)
+    def put_lowest(drum, rim, margin, manifold, count):
+        axis, q = axis_of(drum), from_centre(drum, rim.centre)
+        r, e1, e2 = rim.r, rim.e1, rim.e2
         e = plus_scaled(e2, -dot(e2, axis), axis)
         c = length(e)
         q1 = dot(q, e1)
@@ -67,8 +82,8 @@ def make_put_lowest(spec):
                 t += change
                 if abs(change) <= CONVERGED:
                     break
-            p = plus_scaled(plus_scaled(rim, r * cos(t), e1), r * sin(t), e2)
-            count = put_point(drum, p, 0.0, margin, manifold, count, feature + found)
+            core = CorePoint(point_of(rim, t), 0.0, rim.feature + found)
+            count = put_point(drum, core, margin, manifold, count)
             found += 1
         return count
 
@@ -86,25 +101,24 @@ def make(spec):
         r, manifold, count = cylinder.hx, scratch.manifold, 0
         for end in range(2):
             along = cylinder.hz if end else -cylinder.hz
-            rim = plus_scaled(position(cylinder), along, own)
-            e1, feature = Vec3(cylinder.r00, cylinder.r10, cylinder.r20), RIM * end
+            centre = plus_scaled(position(cylinder), along, own)
+            e1 = Vec3(cylinder.r00, cylinder.r10, cylinder.r20)
             if cavity.shape == BOWL:
-                q = from_centre(cavity, rim)
+                q = from_centre(cavity, centre)
                 q = plus_scaled(q, -dot(q, own), own)
                 if length(q) > DISTINCT * r:
                     e1 = scaled(1.0 / length(q), q)
-                e2 = cross(own, e1)
+                rim = Rim(centre, r, e1, cross(own, e1), RIM * end)
                 for k in range(QUARTERS):
-                    t = 0.5 * pi * k
-                    p = plus_scaled(plus_scaled(rim, r * cos(t), e1), r * sin(t), e2)
-                    count = put_point(cavity, p, 0.0, margin, manifold, count, feature + k)
+                    core = CorePoint(point_of(rim, 0.5 * pi * k), 0.0, rim.feature + k)
+                    count = put_point(cavity, core, margin, manifold, count)
             else:
                 # Where the axes are parallel the rim is a circle: its farthest point is along q.
                 aside = cross(own, axis_of(cavity))
                 if length(aside) > DISTINCT:
                     e1 = scaled(1.0 / length(aside), aside)
-                e2 = cross(own, e1)
-                count = put_lowest(cavity, rim, r, e1, e2, margin, manifold, count, feature)
+                rim = Rim(centre, r, e1, cross(own, e1), RIM * end)
+                count = put_lowest(cavity, rim, margin, manifold, count)
         return count
 
     return kernel(cylinder_cavity, spec)

@@ -25,7 +25,7 @@ from ...vectors import (
     position,
     scaled,
 )
-from ..manifold.cavity_points import make_axis, make_from_centre, make_put_point
+from ..manifold.cavity_points import CorePoint, make_axis, make_from_centre, make_put_point
 from ..shapes.ellipsoid import point_of_normal, turned_by
 
 NEWTON_STEPS = 64
@@ -79,6 +79,6 @@ def make(spec):
                 break
         p, _ = point_of_normal(ellipsoid, into_body(ellipsoid, u))
         at = plus(position(ellipsoid), from_body(ellipsoid, p))
-        return put_point(cavity, at, 0.0, margin, scratch.manifold, 0, 0)
+        return put_point(cavity, CorePoint(at, 0.0, 0), margin, scratch.manifold, 0)
 
     return kernel(ellipsoid_cavity, spec)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from ...compile import kernel, once
 from ...vectors import from_body, plus, position, vector_at
-from ..manifold.cavity_points import make_put_point
+from ..manifold.cavity_points import CorePoint, make_put_point
 
 
 @once
@@ -20,7 +20,8 @@ def make(spec):
         first, last = hulls.vertex_start[hull.hull], hulls.vertex_start[hull.hull + 1]
         for v in range(first, last):
             p = plus(position(hull), from_body(hull, vector_at(hulls.vertices, v)))
-            count = put_point(cavity, p, 0.0, margin, scratch.manifold, count, v - first)
+            core = CorePoint(p, 0.0, v - first)
+            count = put_point(cavity, core, margin, scratch.manifold, count)
         return count
 
     return kernel(hull_cavity, spec)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...compile import kernel, once
 from ...vectors import position
-from ..manifold.cavity_points import make_put_point
+from ..manifold.cavity_points import CorePoint, make_put_point
 
 
 @once
@@ -13,6 +13,7 @@ def make(spec):
     put_point = make_put_point(spec)
 
     def sphere_cavity(cavity, sphere, margin, scratch):
-        return put_point(cavity, position(sphere), sphere.hx, margin, scratch.manifold, 0, 0)
+        core = CorePoint(position(sphere), sphere.hx, 0)
+        return put_point(cavity, core, margin, scratch.manifold, 0)
 
     return kernel(sphere_cavity, spec)

@@ -11,6 +11,7 @@ from ...records import (
     BOWL,
     BOX,
     CAPSULE,
+    CAVITIES,
     COMPOUND,
     CYLINDER,
     DRUM,
@@ -35,7 +36,6 @@ DECLARED = (
     Shape("bowl", BOWL, oriented=False),
     Shape("drum", DRUM),  # its axis is the body's z
 )
-CAVITIES = frozenset({"bowl", "drum"})  # bodies are inside of them
 
 SHAPES = {
     shape.name: shape if shape.kind >= 0 else shape._replace(kind=place)
@@ -56,20 +56,20 @@ def has_cavity(spec: Spec) -> bool:
     return any(shape.name in CAVITIES for shape in shapes_in(spec))
 
 
-def make_is_inside(spec: Spec) -> Any:
-    """Return `kernel(kind) -> whether` B of a pair is inside of A; None where none is."""
+def make_is_inside(spec: Spec) -> tuple[bool, Any]:
+    """Return whether B of a pair is inside of A, and `kernel(kind) -> whether` that of one is."""
     from ...compile import kernel  # with numba
     from ..pairs import SHAPE_PAIRS
 
     pairs = [SHAPE_PAIRS[name] for name in spec.shape_pairs]
     kinds = tuple(pair.kind for pair in pairs if pair.inside)
     if not kinds:
-        return None
+        return False, None
 
     def is_inside(kind):
         return kind in kinds
 
-    return kernel(is_inside, spec)
+    return True, kernel(is_inside, spec)
 
 
 def has_drum(spec: Spec) -> bool:

@@ -8,7 +8,8 @@ import pytest
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.collide.shape_pair import ShapePair, numbered
-from lavendersim.engine.collide.shapes import CAVITIES, SHAPES
+from lavendersim.engine.collide.shapes import SHAPES
+from lavendersim.engine.records import CAVITIES
 
 
 def pair(name: str, *shapes: str) -> ShapePair:

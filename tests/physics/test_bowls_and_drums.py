@@ -38,7 +38,7 @@ SHAPES = {
     "cylinder": f"{{kind: cylinder, radius: {RADIUS}, length: 0.3}}",
     "cube": f"{{kind: box, size: [{EDGE}, {EDGE}, {EDGE}]}}",
 }
-ROUGH = {"rolling", "cylinder"}
+ROLLED = {"rolling", "cylinder"}
 TURN = {"capsule": (math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)}  # their axes along y, as the drum's
 TURN["cylinder"] = TURN["capsule"]
 BOWL = f"{{shape: {{kind: bowl, radius: {R}}}, position: [0, 0, 0], surface: one}}"
@@ -57,7 +57,7 @@ def released(motion: str, angle: float, rate: int) -> str:
     turned = f", orientation: {flow(turn)}" if turn else ""
     it = f"{{shape: {SHAPES[motion]}, mass: 2.0, position: {at}{turned}, surface: one}}"
     wall = {"drum": DRUM} if motion in TURN else {"bowl": BOWL}
-    surface = f"friction: {20.0 if motion in ROUGH else 0.0}"
+    surface = f"friction: {20.0 if motion in ROLLED else 0.0}"
     text = config(wall | {"it": it}, rate, DURATION, surface, repr(GRAVITY))
     return text.replace("timestep:", "integrator: midpoint_contact, timestep:")
 
@@ -167,7 +167,7 @@ def test_energy_and_the_distance_from_the_wall_are_kept(
         swing = 2.0 * GRAVITY * SQUARED[motion][1] * (1.0 - math.cos(angle))  # [J], mass 2 kg
         stride = math.sqrt(SQUARED[motion][0]) * angle / rate
         # Round-off, solves that end at 1e-9 m/s, and (w dt)^2 of what rolls.
-        assert abs(energy - energy[0]).max() < (stride**2 if motion in ROUGH else 1e-6) * swing
+        assert abs(energy - energy[0]).max() < (stride**2 if motion in ROLLED else 1e-6) * swing
         assert abs(off).max() < 0.05 * stride**4 + 1e-8
 
 
