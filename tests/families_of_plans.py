@@ -93,7 +93,12 @@ FAMILIES = (
             *("effects/prescribed_motion", "effects/varying_force", "language/events_on_states"),
             *("language/passages", "hard/structure/arch_of_seventeen_voussoirs"),
             *("trackers/pinched_between_pads", "trackers/three_balls"),
-            *("trackers/pressed_against_a_wall", "scenes/rocking_ellipsoid", "scenes/bowl"),
+            *(
+                "trackers/pressed_against_a_wall",
+                "scenes/rocking_ellipsoid",
+                "scenes/bowl",
+                "scenes/drum",
+            ),
         ),
         (scenes.TURNING,),
         (
