@@ -108,7 +108,7 @@ FAMILIES = (
             "cylinder_cylinder",
             "cylinder_plane",
             "ellipsoid_plane",
-            *("sphere_bowl", "box_bowl", "sphere_drum", "capsule_drum", "cylinder_drum"),
+            *("sphere_bowl", "box_bowl", "sphere_drum", "cylinder_drum"),
             "hull_plane",
             "sphere_cylinder",
         ),

@@ -23,24 +23,21 @@ EDGE = 0.2  # of the cube [m]
 ARM = R - RADIUS
 CUBE_ARM = math.sqrt(R * R - 0.5 * EDGE * EDGE) - 0.5 * EDGE
 RATES = (120, 240, 480)
-DURATION = 1.0  # [s]: a swing of the slowest takes 1.5 s from 0.1 rad, 1.6 s from 1.2 rad
+DURATION = 0.8  # [s], past where what slides turns back: half a swing from 1.2 rad takes 0.7 s
 SQUARED = {  # w^2 [1/s^2], and the distance of the centre [m]
     "sliding": (GRAVITY / ARM, ARM),
     "rolling": (GRAVITY / (1.4 * ARM), ARM),
-    "capsule": (GRAVITY / ARM, ARM),
     "cylinder": (GRAVITY / (1.5 * ARM), ARM),
     "cube": (GRAVITY * CUBE_ARM / (EDGE * EDGE / 6.0 + CUBE_ARM**2), CUBE_ARM),
 }
 SHAPES = {
     "sliding": f"{{kind: sphere, radius: {RADIUS}}}",
     "rolling": f"{{kind: sphere, radius: {RADIUS}}}",
-    "capsule": f"{{kind: capsule, radius: {RADIUS}, length: 0.3}}",
     "cylinder": f"{{kind: cylinder, radius: {RADIUS}, length: 0.3}}",
     "cube": f"{{kind: box, size: [{EDGE}, {EDGE}, {EDGE}]}}",
 }
 ROLLED = {"rolling", "cylinder"}
-TURN = {"capsule": (math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)}  # their axes along y, as the drum's
-TURN["cylinder"] = TURN["capsule"]
+TURN = {"cylinder": (math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)}  # its axis along y, as the drum's
 BOWL = f"{{shape: {{kind: bowl, radius: {R}}}, position: [0, 0, 0], surface: one}}"
 DRUM = (
     f"{{shape: {{kind: drum, radius: {R}}}, position: [0, 0, 0], surface: one, "
