@@ -93,7 +93,12 @@ FAMILIES = (
             *("effects/prescribed_motion", "effects/varying_force", "language/events_on_states"),
             *("language/passages", "hard/structure/arch_of_seventeen_voussoirs"),
             *("trackers/pinched_between_pads", "trackers/three_balls"),
-            *("trackers/pressed_against_a_wall", "scenes/rocking_ellipsoid"),
+            *(
+                "trackers/pressed_against_a_wall",
+                "scenes/rocking_ellipsoid",
+                "scenes/bowl",
+                "scenes/drum",
+            ),
         ),
         (scenes.TURNING,),
         (
@@ -103,6 +108,7 @@ FAMILIES = (
             "cylinder_cylinder",
             "cylinder_plane",
             "ellipsoid_plane",
+            *("sphere_bowl", "box_bowl", "sphere_drum", "cylinder_drum"),
             "hull_plane",
             "sphere_cylinder",
         ),
@@ -119,7 +125,9 @@ FAMILIES = (
     # The engine with everything, which the fuzz compiles.
     Family(
         ("hard/found/cohesion_of_what_turns", "hard/found/springs_beside_what_gives_way"),
-        shape_pairs=tuple(name for name in SHAPE_PAIRS if "ellipsoid" in name),
+        shape_pairs=tuple(
+            name for name, pair in SHAPE_PAIRS.items() if "ellipsoid" in name or pair.inside
+        ),
         effects=(
             *("anisotropic_friction", "contact_patch", "joint", "joint_stop", "motor"),
             *("tangential_restitution", "velocity_log"),

@@ -27,8 +27,10 @@ from lavendersim.cell.numerics import Numerics
 from lavendersim.cell.record import CellRecord, TimeWindow
 from lavendersim.cell.scene import CellForce, CellScene
 from lavendersim.cell.shapes import (
+    Bowl,
     Box,
     Capsule,
+    Cavity,
     CellCompound,
     CellHull,
     CellPart,
@@ -36,6 +38,7 @@ from lavendersim.cell.shapes import (
     CellSimple,
     Convex,
     Cylinder,
+    Drum,
     Ellipsoid,
     Plane,
     Sphere,
@@ -47,8 +50,10 @@ __all__ = [
     "CAPTURE_IN_SWEEPS",
     "NO_MISTAKE",
     "AnyEvent",
+    "Bowl",
     "Box",
     "Capsule",
+    "Cavity",
     "CellBody",
     "CellCompound",
     "CellConfig",
@@ -69,6 +74,7 @@ __all__ = [
     "CellTriggeredEvent",
     "Convex",
     "Cylinder",
+    "Drum",
     "Ellipsoid",
     "FrictionCone",
     "Impacts",

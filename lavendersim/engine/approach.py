@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from .collide.shapes import has_drum
 from .compile import inner, kernel
 from .effects import made_once
-from .records import PLANE, TOUCHING
+from .records import DRUM, PLANE, TOUCHING
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
@@ -166,13 +167,16 @@ def make_forced(spec: Spec) -> Any:
 
 def make_turning(spec: Spec) -> Any:
     """Return `kernel(contact, bodies, motion) -> speed`, at most, by the spins of both [m/s]."""
-    turns = step_terms(spec).turns
+    turns, drums = step_terms(spec).turns, has_drum(spec)
 
     def turning_of(contact, body, m):
-        # A plane has no size: its spin moves what is at the contact.
+        # A plane has no size, a drum no end: its spin moves what is at the contact.
         size = body.bound
         if body.shape == PLANE:
             size = length(minus(position(contact), position(body)))
+        if drums:
+            if body.shape == DRUM:
+                size = length(minus(position(contact), position(body)))
         return size * length(Vec3(m.wx, m.wy, m.wz))
 
     turning_of = kernel(turning_of, spec)

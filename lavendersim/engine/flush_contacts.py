@@ -17,12 +17,14 @@ from __future__ import annotations
 from typing import Any
 
 from .approach import CREEP, FAR, make_rate, make_slowest
+from .collide.pairs import SHAPE_PAIRS
 from .collide.shape_kernels import make_radius, make_support
+from .collide.shapes import has_cavity
 from .compile import kernel
 from .contact_lists import make_list_contacts
 from .effects import has_hook
 from .impact_rows import FLUSH, make_keep_present
-from .records import PLANE, ROPE, SPHERE, TOUCHING
+from .records import BOWL, DRUM, PLANE, ROPE, SPHERE, TOUCHING
 from .row_terms import row_terms
 from .spec import Spec
 from .vectors import Vec3, dot, minus, plus, position
@@ -37,13 +39,13 @@ def make_drop_flush(spec: Spec) -> Any:
     Of rows with the `rate` of their gaps, none of which waits.
     None where no pair has an edge.
     """
-    if not any("plane" not in name for name in spec.shape_pairs):
+    if not any(SHAPE_PAIRS[name].convex for name in spec.shape_pairs):
         return None
     support, radius = make_support(spec), make_radius(spec)
     rate, slowest = make_rate(spec), make_slowest(spec)
     keep_present, list_contacts = make_keep_present(spec), make_list_contacts(spec)
     sleeps, connects = has_hook(spec, "update_sleeping"), spec.connects
-    joins = row_terms(spec).bilateral
+    joins, cavities = row_terms(spec).bilateral, has_cavity(spec)
 
     def passes(state, contact, other, workspace, params, least):
         bodies, motion = state.bodies, state.motion
@@ -115,6 +117,9 @@ def make_drop_flush(spec: Spec) -> Any:
             ajar = ajar and not (bodies[row.a].shape == SPHERE and bodies[row.b].shape == SPHERE)
             if contact.rate >= -CREEP and not ajar:
                 continue
+            if cavities:
+                if bodies[row.a].shape == BOWL or bodies[row.a].shape == DRUM:  # without an edge
+                    continue
             if bodies[row.a].shape != PLANE and bodies[row.b].shape != PLANE:
                 least = slowest(contact, bodies, motion)
                 if contact.rate < -least or ajar:

@@ -24,6 +24,8 @@ from .approach import (
     make_relative_speed,
     make_slowest,
 )
+from .cavity_flight import make_closing
+from .collide.shapes import make_is_inside
 from .compile import kernel
 from .effects import made_once
 from .records import TOUCHING
@@ -87,6 +89,8 @@ def make_foresee(spec: Spec) -> Any:
     draws, is_drawn = made_once(spec, "is_drawn")
     overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
     acceleration_of_rope: Any = make_gap_acceleration_of_rope(spec) if ropes else None
+    cavities, is_inside = make_is_inside(spec)
+    closing: Any = make_closing(spec) if cavities else None
 
     def foresee(contact, pair, bodies, motion, params, met):
         left = params.dt
@@ -109,6 +113,10 @@ def make_foresee(spec: Spec) -> Any:
             if contact.span > 0.0:
                 end_a, end_b = bodies[pair.a], bodies[pair.b]
                 swung = acceleration_of_rope(end_a, end_b, bodies, motion) * left
+                dv, most = dv + swung, most + abs(swung)
+        if cavities:
+            if is_inside(pair.kind):  # its wall curves towards it
+                swung = closing(contact, pair, bodies, motion, left) * left
                 dv, most = dv + swung, most + abs(swung)
         a, e = (change_ahead(contact, motion) + swung) / left, 0.0
         gap = contact.phi if contact.phi > TOUCHING else 0.0

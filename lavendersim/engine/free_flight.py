@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from .compile import inner
+from typing import Any
+
+from .compile import inner, kernel
+from .row_terms import row_terms
+from .spec import Spec
 
 # Room [m/s, and of the velocity] that such a row leaves: round-off must not push what flies, for
 # what a contact pushes is carried by the velocity of the step's end.
@@ -13,3 +17,26 @@ LOOSE = 1e-12
 def target_of_flight(v_n):
     """Return the target [m/s] that holds without a push; v_n: normal velocity before the solve."""
     return -v_n + LOOSE * (1.0 + abs(v_n))
+
+
+def make_widen(spec: Spec) -> Any:
+    """Return `kernel(contact, params)`, of a row at the start with a gap: by what turning opens it.
+
+    The gap at the end is phi + dt (n . J(q_0) v + b), v: v_1, or of what flies the mean. Surfaces
+    that curve away from each other may come nearer by their rate at the start and yet not meet.
+    """
+
+    bilateral = row_terms(spec).bilateral
+
+    def widen(contact, params):
+        if bilateral:
+            if contact.bilateral == 1:
+                return
+        opens = contact.middle_n - contact.begin_n
+        if contact.phi > params.slop and opens > 0.0:
+            mean = contact.v_n_pre - 0.5 * contact.dv_n
+            if contact.phi + (mean + opens) * params.dt > -params.slop:
+                contact.target = max(contact.target, target_of_flight(contact.v_n_pre))
+            contact.target += opens
+
+    return kernel(widen, spec)

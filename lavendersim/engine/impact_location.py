@@ -24,6 +24,7 @@ from .approach import (
     relative_velocity,
 )
 from .body_turn import make_free_turn
+from .collide.manifold.own_normals import has_own_normals, point_normal
 from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import put_normal
@@ -62,7 +63,7 @@ def make_locate(spec: Spec) -> Any:
     change_ahead, nearest_rate = make_change_ahead(spec), make_nearest_rate(spec)
     turns, compound = step_terms(spec).turns, has_hook(spec, "place_parts")
     turn: Any = make_free_turn(spec)
-    overlooks = step_terms(spec).overlooks
+    overlooks, own_normals = step_terms(spec).overlooks, has_own_normals(spec)
     _, place_part = made_once(spec, "place_part")
 
     def displace(body, velocity, m, t, left):
@@ -158,7 +159,10 @@ def make_locate(spec: Spec) -> Any:
                     seen = met
             point = points[seen]
             contact.x, contact.y, contact.z = point.x, point.y, point.z
-            put_normal(contact, manifold_normal(touching))
+            n = manifold_normal(touching)
+            if own_normals:
+                n = point_normal(touching, seen)
+            put_normal(contact, n)
             phi = point.phi
             dv = change_ahead(contact, motion)
             v = approach(contact, bodies, motion) + dv * t / left

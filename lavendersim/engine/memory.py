@@ -18,6 +18,7 @@ import numpy as np
 from .anderson import FixedPoint, allocate_fixed_point
 from .collide.broad.broad_phase import allocate_broad_phase
 from .collide.convex.hull_geometry import HullGeometry
+from .collide.manifold.own_normals import has_own_normals
 from .collide.scratch import Scratch, allocate_scratch
 from .contact_lists import ContactLists, allocate_contact_lists
 from .effects import has_hook
@@ -201,7 +202,7 @@ def allocate_workspace(
     links = len(state.links) if centred and has_hook(spec, "act_beside") else 0
     coupled = bodies if links else 0
     empty = Workspace(
-        collision=allocate_scratch(hulls),
+        collision=allocate_scratch(hulls, has_own_normals(spec)),
         trial=Trial(
             np.zeros(4 * tried, state.bodies.dtype),
             np.zeros(2 * tried, state.velocities.dtype),

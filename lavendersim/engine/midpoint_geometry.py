@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .collide.manifold.own_normals import has_own_normals, point_normal
 from .collide.manifold.point import WHOLE, manifold_normal
 from .collide.narrow_phase import make_manifold
 from .collide.records import UNBOUNDED, put_normal
@@ -160,6 +161,7 @@ def make_look(spec: Spec) -> Any:
     overlooks, ropes = step_terms(spec).overlooks, row_terms(spec).taut
     marks, mark_middle = made_once(spec, "mark_middle")
     arms = row_terms(spec).bilateral and row_terms(spec).levers
+    own_normals = has_own_normals(spec)
     caps = any(shape.kind == CYLINDER for shape in shapes_in(spec))
 
     def look(state, count, poses, workspace):
@@ -218,7 +220,10 @@ def make_look(spec: Spec) -> Any:
                         if row.kind == ROPE:
                             contact.span = a.hx - point.phi
                     contact.x, contact.y, contact.z = point.x, point.y, point.z
-                    put_normal(contact, manifold_normal(scratch.manifold))
+                    n = manifold_normal(scratch.manifold)
+                    if own_normals:
+                        n = point_normal(scratch.manifold, best)
+                    put_normal(contact, n)
                     if arms:
                         if contact.bilateral == 1:
                             put_mean_ends(contact, row.kind, a, b, bodies, poses)

@@ -14,6 +14,7 @@ from .compile import either, greatest, kernel
 from .contact import make_apply_start
 from .contact_spring_law import make_linearise
 from .effects import has_hook, made_by, made_once
+from .free_flight import make_widen
 from .midpoint_geometry import (
     make_keep_start,
     make_look,
@@ -31,7 +32,6 @@ from .midpoint_rows import (
     make_lasting,
     make_resist,
     make_shift,
-    make_widen,
 )
 from .parts import make_forget_history
 from .residual import make_residual
@@ -180,7 +180,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 contact = contacts[c]
                 impulse = impulse_of(contact)
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
-                shift(contact, lead, motion, params)
+                shift(contact, pairs[contact.pair], lead, motion, params)
                 if contact.jumps == 1:
                     contact.lasts = 0
                 if contact.lasts == 0:  # it has no middle: what is met there may be elsewhere
@@ -237,7 +237,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 contact = contacts[c]
                 stay(contact, bodies, poses)
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
-                lasting(contact, velocities, motion, params)
+                lasting(contact, pairs[contact.pair], velocities, motion, params)
             if loaded:
                 for c in range(count):
                     preload(contacts[c], velocities, motion)

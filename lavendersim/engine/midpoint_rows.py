@@ -12,10 +12,10 @@ from typing import Any
 
 from .block import make_relative_velocity, make_slip_velocity
 from .collide.records import UNBOUNDED
+from .collide.shapes import make_is_inside
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
-from .free_flight import target_of_flight
 from .joint_turn import make_joint_velocity
 from .records import PLANE
 from .row_terms import row_terms
@@ -98,13 +98,14 @@ def make_is_turning(spec: Spec) -> Any:
 
 
 def make_lasting(spec: Spec) -> Any:
-    """Return `kernel(contact, velocities, motion, params)`, of a row completed at the start.
+    """Return `kernel(contact, pair, velocities, motion, params)`, of a row completed at the start.
 
     Whether it lasts, by how fast its surfaces approach before forces act. velocities: after them.
     """
     friction = row_terms(spec).frictional
     springs, spring_row = made_once(spec, "spring_row")
     ropes, bilateral = row_terms(spec).taut, row_terms(spec).bilateral
+    inside, is_inside = make_is_inside(spec)
     turns, normal_velocity = step_terms(spec).turns, make_normal_velocity(spec)
 
     def is_twisted(v, m):
@@ -112,7 +113,7 @@ def make_lasting(spec: Spec) -> Any:
 
     twisted: Any = kernel(is_twisted, spec) if turns else None
 
-    def lasting(contact, velocities, motion, params):
+    def lasting(contact, pair, velocities, motion, params):
         contact.begin_n = contact.v_n_pre - contact.dv_n
         if turns:
             a, b = contact.a, contact.b
@@ -129,6 +130,9 @@ def make_lasting(spec: Spec) -> Any:
         if ropes:
             if contact.span > 0.0:  # its ends swing by as much to either side of its length
                 closes = opens = FORCED * contact.stirred + CALM
+        if inside:
+            if is_inside(pair.kind):  # its wall turns back what parts so slowly
+                opens = FORCED * forced + CALM
         calm = -closes <= contact.begin_n <= opens
         contact.lasts, contact.jumps = 1 if closed and calm else 0, 0
         if springs:
@@ -279,7 +283,7 @@ def make_resist(spec: Spec) -> Any:
 
 
 def make_shift(spec: Spec) -> Any:
-    """Return `kernel(contact, lead, motion, params)`, of a row at the middle: b, where it lasts."""
+    """Return `kernel(contact, pair, lead, motion, params)`, of a row at the middle: its b."""
     terms = row_terms(spec)
     friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")
@@ -289,8 +293,9 @@ def make_shift(spec: Spec) -> Any:
     normal_velocity = make_normal_velocity(spec)
     relative_velocity = make_relative_velocity(spec)
     is_unparted: Any = make_is_unparted(spec) if bilateral else None
+    inside, is_inside = make_is_inside(spec)
 
-    def shift(contact, lead, motion, params):
+    def shift(contact, pair, lead, motion, params):
         la, lb = lead[contact.a], lead[contact.b]
         contact.middle_n = normal_velocity(contact, la, lb)
         if bilateral:
@@ -322,6 +327,9 @@ def make_shift(spec: Spec) -> Any:
             # What its ends approach by is no mode to damp: it is what keeps length and energy.
             if contact.span > 0.0:
                 kept = 0.0
+        if inside:
+            if is_inside(pair.kind):  # as of a rope
+                kept = 0.0
         b = contact.middle_n - kept
         ajar = max(contact.phi - params.slop, 0.0)
         forced = abs(contact.dv_n) * params.timestep / params.dt
@@ -335,6 +343,9 @@ def make_shift(spec: Spec) -> Any:
         if ropes:
             if contact.span > 0.0:
                 closes = opens = FORCED * contact.stirred + turned
+        if inside:
+            if is_inside(pair.kind):
+                opens = FORCED * forced + turned
         calm = -closes <= contact.begin_n <= opens
         if not soft and (not calm or ajar > AJAR * params.dt * abs(b)):
             return
@@ -368,26 +379,3 @@ def make_shift(spec: Spec) -> Any:
                 contact.surface_2 += two
 
     return kernel(shift, spec)
-
-
-def make_widen(spec: Spec) -> Any:
-    """Return `kernel(contact, params)`, of a row at the start with a gap: by what turning opens it.
-
-    The gap at the end is phi + dt (n . J(q_0) v + b), v: v_1, or of what flies the mean. Surfaces
-    that curve away from each other may come nearer by their rate at the start and yet not meet.
-    """
-
-    bilateral = row_terms(spec).bilateral
-
-    def widen(contact, params):
-        if bilateral:
-            if contact.bilateral == 1:
-                return
-        opens = contact.middle_n - contact.begin_n
-        if contact.phi > params.slop and opens > 0.0:
-            mean = contact.v_n_pre - 0.5 * contact.dv_n
-            if contact.phi + (mean + opens) * params.dt > -params.slop:
-                contact.target = max(contact.target, target_of_flight(contact.v_n_pre))
-            contact.target += opens
-
-    return kernel(widen, spec)

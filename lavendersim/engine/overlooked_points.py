@@ -65,7 +65,10 @@ def make_note_left_out(spec: Spec) -> Any:
 
     Notes the points behind the first `count` of `scratch.manifold`.
     """
+    from .collide.manifold.own_normals import has_own_normals, point_normal
     from .collide.manifold.point import LEFT_OUT
+
+    own_normals = has_own_normals(spec)
 
     def note_left_out(pair, a, b, count, n, workspace):
         manifold, overlooked = workspace.collision.manifold, workspace.overlooked
@@ -77,6 +80,8 @@ def make_note_left_out(spec: Spec) -> Any:
             row, point = overlooked.points[noted], manifold.points[k]
             row.pair, row.a, row.b, row.waits = pair, a, b, 0
             row.x, row.y, row.z, row.phi = point.x, point.y, point.z, point.phi
+            if own_normals:
+                n = point_normal(manifold, k)
             row.nx, row.ny, row.nz = n.x, n.y, n.z
             noted += 1
         overlooked.noted[0] = noted

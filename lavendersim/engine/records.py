@@ -28,6 +28,9 @@ CYLINDER: Final = 4
 HULL: Final = 5
 COMPOUND: Final = 6
 ELLIPSOID: Final = 7
+BOWL: Final = 8
+DRUM: Final = 9
+CAVITIES: Final = frozenset({"bowl", "drum"})  # shapes that other bodies are inside of
 ROPE_END: Final = -1  # where a rope or a joint is on a body: `collide.rope`, `collide.joint`
 
 # PAIR.kind of what no two shapes are: those of shapes are 0 and more, those of joints less than -2.
@@ -64,12 +67,14 @@ BODY: Final[list[Field]] = [
     ("inv_m", F8),  # 1/mass [1/kg], 0 for fixed bodies
     ("shape", I8),  # its kind, see above
     # Plane: unit normal [-]. Box: half edge lengths [m]. Sphere: radius in hx [m]. Capsule and
-    # cylinder: radius in hx, half length along the body's z in hz [m]. Hull and compound: unused.
+    # cylinder: radius in hx, half length along the body's z in hz [m]. Bowl and drum:
+    # radius in hx [m]. Hull and compound: unused.
     ("hx", F8),
     ("hy", F8),
     ("hz", F8),
     ("offset", F8),  # plane: n . x of its points [m]; other shapes: unused
-    ("bound", F8),  # radius of the bounding sphere about the centre of mass [m]; plane: unused
+    ("bound", F8),  # radius of the bounding sphere about the centre of mass [m]; of a bowl
+    # or a drum its own; plane: unused
 ]
 
 # Orientation, where some shape but planes and spheres occurs, or something turns.

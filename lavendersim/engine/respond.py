@@ -136,7 +136,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                 reverse_slip(contact, pairs[contact.pair], va, vb)
         if centred:
             for c in range(count):
-                lasting(contacts[c], velocities, motion, params)
+                lasting(contacts[c], pairs[contacts[c].pair], velocities, motion, params)
             if bilateral:
                 for c in range(count):
                     contact = contacts[c]

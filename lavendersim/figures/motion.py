@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.cell import Plane
+from lavendersim.cell import Cavity, Plane
 from lavendersim.figures.style import LOOKS
 from lavendersim.figures.thumbnail import FIXED, corners_of, grounds_of, view_of
 from lavendersim.measures.changes import removals
@@ -30,7 +30,9 @@ def motion(trace: Any) -> str:
     """
     rows, poses = trace.recorded_pose
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
-    solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane)][:MOST_BODIES]
+    solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane | Cavity)][
+        :MOST_BODIES
+    ]
     whole = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))
     if len(whole) < 2 or not solid:
         return ""

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.cell import CellShape, Convex, Ellipsoid, Plane
+from lavendersim.cell import Cavity, CellShape, Convex, Ellipsoid, Plane
 from lavendersim.figures.style import DARK, GREY, LOOKS
 from lavendersim.geometry.rotations import rotation_matrices, rotation_matrix
 from lavendersim.geometry.shapes import half_space, pieces
@@ -88,7 +88,9 @@ def _outlines(
     rows, poses = trace.recorded_pose
     whole = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
-    solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane)][:MOST_BODIES]
+    solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane | Cavity)][
+        :MOST_BODIES
+    ]
     movable = {i for i in solid if not bodies[i].fixed}
     outlines: list[np.ndarray] = []
     colours: list[str] = []

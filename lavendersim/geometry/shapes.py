@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lavendersim.cell.shapes import CellCompound, CellShape, CellSimple, Plane
+from lavendersim.cell.shapes import Cavity, CellCompound, CellShape, CellSimple, Plane
 from lavendersim.geometry.quaternions import IDENTITY
 from lavendersim.geometry.rotations import Floats, rotation_matrix
 
@@ -33,11 +33,15 @@ def half_space(shape: CellShape) -> HalfSpace:
 def bounding_radius(shape: CellShape) -> float:
     """Return the radius of the sphere about the centre of mass that holds the shape; planes: inf.
 
+    Of a cavity its own: nothing inside of it is farther from its centre or its axis.
+
     Of a compound an upper bound: it holds the spheres of its parts.
     """
     match shape:
         case Plane():
             return math.inf
+        case Cavity():
+            return shape.radius
         case CellCompound():
             return max(
                 math.hypot(*part.position) + bounding_radius(part.shape) for part in shape.parts
@@ -48,10 +52,10 @@ def bounding_radius(shape: CellShape) -> float:
 def thickness(shape: CellShape) -> float:
     """Return the least width along the axes of its frame; of a compound, its thinnest part's.
 
-    Infinite for a plane, which has no other side.
+    Infinite for a plane or a cavity, which has no other side.
     """
     match shape:
-        case Plane():
+        case Plane() | Cavity():
             return math.inf
         case CellCompound():
             return min(thickness(part.shape) for part in shape.parts)
@@ -64,8 +68,8 @@ def extent(shape: CellShape, rotation: Floats, direction: Floats) -> float:
     rotation: matrix, body to world. This is the support function of the shape.
     """
     match shape:
-        case Plane():
-            raise ValueError("a plane has no extent")
+        case Plane() | Cavity():
+            raise ValueError(f"a {shape.kind} has no extent")
         case CellCompound():
             return max(
                 float((rotation @ np.asarray(part.position)) @ direction)
@@ -86,7 +90,7 @@ class Piece(NamedTuple):
 
 def pieces(shape: CellShape) -> tuple[Piece, ...]:
     """Return the convex solids that a shape is made of: a compound's parts, or itself."""
-    if isinstance(shape, Plane):
+    if isinstance(shape, Plane | Cavity):
         return ()
     if isinstance(shape, CellCompound):
         return tuple(

@@ -1,4 +1,4 @@
-"""Bodies that start inside one another or behind a plane.
+"""Bodies that start inside one another, behind a plane or in the wall of a cavity.
 
 Planes: exactly, by the body's extent against the normal. Spheres, boxes, capsules: the depth of
 `measures.penetration`. Every other pair: GJK between the corners of both, each drawn in by
@@ -12,12 +12,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from lavendersim.cell import CellBody, Plane
+from lavendersim.cell import Cavity, CellBody, Drum, Plane, Sphere
 from lavendersim.cell.shapes import CellSimple
 from lavendersim.engine.effects import holding
 from lavendersim.errors import Defect
 from lavendersim.experiment import Cell, body_path
-from lavendersim.geometry.bodies import is_movable
+from lavendersim.geometry.bodies import is_movable, rotation_of, vector
 from lavendersim.geometry.minkowski_sums import Sums, extents, sums_of
 from lavendersim.geometry.point_sets import hulls_meet
 from lavendersim.geometry.rotations import Floats, rotation_matrices, rotation_matrix
@@ -46,20 +46,22 @@ class Parts(NamedTuple):
 
 
 class Inside(NamedTuple):
-    """A body that begins in another one, or behind a plane; ordered by depth."""
+    """A body that begins in another one, or behind a plane or a wall; ordered by depth."""
 
     depth: float  # [m], 0 where it is not known
     name: str
-    other: str  # a body, or a plane
+    other: str  # a body, a plane or a cavity
 
 
 def overlaps(cell: Cell) -> Iterator[Defect]:
-    """Yield a defect at the deepest body behind a plane, and at the deepest inside another."""
+    """Yield a defect at the deepest body behind a plane or a wall, and at the deepest inside
+    another.
+    """
     bodies = cell.config.scene.bodies
     parts = _parts(bodies)
     if not parts.names:
         return
-    behind = max(_behind_planes(bodies, parts), default=None)
+    behind = max((*_behind_planes(bodies, parts), *_in_walls(bodies, parts)), default=None)
     if behind is not None:
         how = f"starts {behind.depth:.3g} m behind the surface of {behind.other}"
         yield _defect(cell, behind.name, f"{behind.name} {how}")
@@ -80,7 +82,9 @@ def _defect(cell: Cell, name: str, sentence: str) -> Defect:
 
 
 def _parts(bodies: dict[str, CellBody]) -> Parts:
-    solids = {name: body for name, body in bodies.items() if not isinstance(body.shape, Plane)}
+    solids = {
+        name: body for name, body in bodies.items() if not isinstance(body.shape, Plane | Cavity)
+    }
     centres = np.array([body.position for body in solids.values()]).reshape(-1, 3)
     turns = rotation_matrices(
         np.array([body.orientation for body in solids.values()]).reshape(-1, 4)
@@ -121,6 +125,25 @@ def _behind_planes(bodies: dict[str, CellBody], parts: Parts) -> Iterator[Inside
         deepest = int(np.argmax(depth))
         if depth[deepest] > 0.0:
             yield Inside(float(depth[deepest]), parts.names[deepest], name)
+
+
+def _in_walls(bodies: dict[str, CellBody], parts: Parts) -> Iterator[Inside]:
+    """Yield of each cavity the movable solids that reach into its wall, by their corners."""
+    for name, body in bodies.items():
+        if not isinstance(body.shape, Cavity):
+            continue
+        across = np.eye(3)
+        if isinstance(body.shape, Drum):
+            along = rotation_of(body)[:, 2]
+            across = across - np.outer(along, along)
+        for row in np.flatnonzero(parts.movable):
+            shape, centre = parts.shapes[row], parts.placed.position[row] - vector(body.position)
+            ball = shape.radius if isinstance(shape, Sphere) else 0.0
+            corners = np.zeros((1, 3)) if ball else np.array(shape.corners())
+            points = centre + corners @ parts.placed.rotation[row].T
+            depth = float(np.linalg.norm(points @ across, axis=1).max()) + ball - body.shape.radius
+            if depth > DRAWN_IN * parts.thickness[row]:
+                yield Inside(depth, parts.names[row], name)
 
 
 def _inside(parts: Parts) -> list[Inside]:

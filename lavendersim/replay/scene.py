@@ -38,6 +38,7 @@ GROUND_COLOUR = (74, 78, 86)
 GRID_COLOUR = (112, 118, 128)
 
 PATH_POINTS = 2000  # more than a screen has pixels along a path
+SEEN_INTO = ("bowl", "drum")  # walls are around the bodies: solid ones would hide them
 LABELLED_BODIES = 8  # more names than this cover what they name
 
 
@@ -120,7 +121,7 @@ def draw(
         _draw_path(stream, trace, body, colour, layer)
         labelled = len(bodies) <= LABELLED_BODIES and not ghost
         # Forces act at surfaces and point into bodies: solid bodies would hide them.
-        look = BodyLook(colour, body.fixed, body.name, labelled)
+        look = BodyLook(colour, body.fixed and body.kind not in SEEN_INTO, body.name, labelled)
         drawn = archetypes(body.pieces, look)
         frame = rr.CoordinateFrame(layer.frame(body.name))
         for kind, forms in drawn.items():

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.cell import CellBody, CellHull, CellPart, CellShape, Convex, Plane
+from lavendersim.cell import Cavity, CellBody, CellHull, CellPart, CellShape, Convex, Plane
 from lavendersim.engine.collide.convex.hull_geometry import (
     HullGeometry,
     Polyhedron,
@@ -111,6 +111,8 @@ def _fill_shape(record: np.void, shape: CellShape) -> None:
             normal = np.asarray(shape.normal, float)
             record["hx"], record["hy"], record["hz"] = normal / np.linalg.norm(normal)
             record["offset"] = shape.offset
+        case Cavity():
+            record["hx"] = shape.radius
         case Convex():
             row = shape.row()
             _fill(record, row, row.values())

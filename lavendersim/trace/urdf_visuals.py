@@ -1,9 +1,9 @@
 """The URDF <visual> elements that show a shape in its body.
 
 URDF knows boxes, spheres and cylinders without files. A capsule is a cylinder and two spheres. Any
-other shape is drawn by its edges or those of its corners' hull, thin cylinders: a mesh would be a
-file beside the log. Shapes are given in the body's frame, so nothing here knows where the body is,
-but for planes.
+other shape is drawn by its edges or those of its corners' hull, a cavity by circles, thin
+cylinders: a mesh would be a file beside the log. Shapes are given in the body's frame, so nothing
+here knows where the body is, but for planes.
 """
 
 from __future__ import annotations
@@ -16,8 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lavendersim.cell import (
+    Bowl,
     Box,
     Capsule,
+    Cavity,
     CellCompound,
     CellHull,
     CellShape,
@@ -26,6 +28,7 @@ from lavendersim.cell import (
     Plane,
     Sphere,
 )
+from lavendersim.cell.shapes.shape import ROUND, ball, circle
 from lavendersim.geometry.convex_hull import Polyhedron, convex_hull
 from lavendersim.geometry.rotations import frame_along, rotation_matrix
 
@@ -58,6 +61,8 @@ def visuals(shape: CellShape, pose: Matrix, plane_side: float) -> list[Visual]:
 
     pose: of the body, x y z qw qx qy qz. plane_side: of the square that stands for a plane [m].
     """
+    if isinstance(shape, Cavity):
+        return list(_circles(shape))
     if isinstance(shape, Plane):
         return [_plane(shape, pose, plane_side)]
     if isinstance(shape, CellCompound):
@@ -111,6 +116,21 @@ def _plane(shape: Plane, pose: Matrix, side: float) -> Visual:
     body = rotation_matrix(pose[3:])
     box = f'<box size="{numbers((side, side, PLANE_THICKNESS))}"/>'
     return Visual(box, body.T @ (centre - pose[:3]), body.T @ frame_along(normal))
+
+
+def _circles(cavity: Cavity) -> Iterator[Visual]:
+    """Yield thin bars along circles of a cavity: what is inside is seen between them."""
+    radius = cavity.radius
+    if isinstance(cavity, Bowl):
+        loops = np.array(ball(radius, 0.0), float).reshape(-1, ROUND, 3)
+    else:
+        loops = np.array([circle(radius, height) for height in (-radius, 0.0, radius)], float)
+    for loop in loops:
+        for one, other in zip(loop, np.roll(loop, -1, axis=0), strict=True):
+            along = other - one
+            length = float(np.linalg.norm(along))
+            bar = _cylinder(EDGE_SHARE * radius, length)
+            yield Visual(bar, 0.5 * (one + other), frame_along(along / length))
 
 
 def _centred(geometry: str) -> Visual:

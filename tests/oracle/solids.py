@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 KINDS = ("plane", "sphere", "box", "capsule", "cylinder", "hull", "compound", "ellipsoid")
+CAVITIES = ("bowl", "drum")  # no solids: what is in them is judged by its farthest point
 
 
 class Solid(NamedTuple):

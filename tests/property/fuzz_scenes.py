@@ -75,7 +75,7 @@ class Drawn(NamedTuple):
 
     def switches(self) -> dict[str, str]:
         """Return the section `effects` that forces all of it on."""
-        shapes = {*self.shapes, "plane"} - {"compound"}
+        shapes = {*self.shapes, "plane", "bowl", "drum"} - {"compound"}
         pairs = [name for name, pair in SHAPE_PAIRS.items() if {*pair.shapes} <= shapes]
         return dict.fromkeys((*self.effects, *pairs), "on")
 

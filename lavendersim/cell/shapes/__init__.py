@@ -1,4 +1,4 @@
-"""Shapes of bodies: half-space, convex solids, compounds of these. One file each.
+"""Shapes of bodies: half-space, cavities, convex solids, compounds of these. One file each.
 
 Each has a frame of its own. The frame of a body has its origin in the centre of mass and its axes
 along the principal axes of the shape; corners of hulls and parts of compounds are given in it.
@@ -12,6 +12,7 @@ from pydantic import Field
 
 from lavendersim.cell.shapes.box import Box
 from lavendersim.cell.shapes.capsule import Capsule
+from lavendersim.cell.shapes.cavity import Bowl, Cavity, Drum
 from lavendersim.cell.shapes.compound import CellCompound, CellPart
 from lavendersim.cell.shapes.convex import PRIMITIVES, CellSimple
 from lavendersim.cell.shapes.cylinder import Cylinder
@@ -22,17 +23,19 @@ from lavendersim.cell.shapes.shape import Convex, Homogeneous, Primitive
 from lavendersim.cell.shapes.sphere import Sphere
 
 if TYPE_CHECKING:
-    CellShape = Plane | Convex | CellCompound
+    CellShape = Plane | Cavity | Convex | CellCompound
 else:
     CellShape = Annotated[
-        Union[(Plane, *PRIMITIVES, CellHull, CellCompound)],
+        Union[(Plane, *PRIMITIVES, CellHull, CellCompound, Bowl, Drum)],
         Field(discriminator="kind"),
     ]
 
 __all__ = [
     "PRIMITIVES",
+    "Bowl",
     "Box",
     "Capsule",
+    "Cavity",
     "CellCompound",
     "CellHull",
     "CellPart",
@@ -40,6 +43,7 @@ __all__ = [
     "CellSimple",
     "Convex",
     "Cylinder",
+    "Drum",
     "Ellipsoid",
     "Homogeneous",
     "Plane",

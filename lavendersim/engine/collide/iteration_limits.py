@@ -22,7 +22,7 @@ BY_EPA = ("convex", "ellipsoid_convex")
 def needs_separation(spec: Spec) -> bool:
     """Whether a pair has a gap that its points do not hold."""
     pairs = [SHAPE_PAIRS[name] for name in spec.shape_pairs]
-    return not all(pair.closed_form or "plane" in pair.shapes for pair in pairs)
+    return not all(pair.closed_form or not pair.convex for pair in pairs)
 
 
 def has_epa(spec: Spec) -> bool:

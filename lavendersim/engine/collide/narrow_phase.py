@@ -16,6 +16,12 @@ from ..spec import Spec
 from ..step_terms import step_terms
 from ..vectors import Vec3, dot
 from .joint import is_couple, is_motor, is_stop, make_joint, put_ends
+from .manifold.own_normals import (
+    has_own_normals,
+    make_has_shared,
+    point_normal,
+    put_point_normal,
+)
 from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
 from .pairs import SHAPE_PAIRS
 from .records import put_normal
@@ -39,7 +45,27 @@ def displacement(of_a, of_b, share, dt):
 
 
 def make_manifold(spec: Spec, names: tuple[str, ...]):
-    """Return `kernel(kind, a, b, margin, scratch) -> count`: these pairs, ropes and joints."""
+    """Return `kernel(kind, a, b, margin, scratch) -> count`: these pairs, ropes and joints.
+
+    Where a pair has normals of single points, every point has one then.
+    """
+    any_pair = _make_manifold_of_joints(spec, names)
+    if not has_own_normals(spec):
+        return any_pair
+    has_shared = make_has_shared(spec)
+
+    def manifold_with_normals(kind, a, b, margin, scratch):
+        count = any_pair(kind, a, b, margin, scratch)
+        if has_shared(kind):
+            manifold = scratch.manifold
+            for k in range(count + manifold.reduction[LEFT_OUT]):
+                put_point_normal(manifold, k, manifold_normal(manifold))
+        return count
+
+    return kernel(manifold_with_normals, spec)
+
+
+def _make_manifold_of_joints(spec: Spec, names: tuple[str, ...]):
     others = _make_manifold_of_ropes(spec, names)
     if not row_terms(spec).bilateral:
         return others
@@ -112,6 +138,7 @@ def make(spec: Spec):
     bounded, stopped = row_terms(spec).bounded, row_terms(spec).stopped
     sleeps, still = made_once(spec, "is_still")
     overlooks, springs = step_terms(spec).overlooks, row_terms(spec).elastic
+    own_normals = has_own_normals(spec)
     is_soft: Any = make_is_soft(spec) if springs else None
     marks, mark_middle = made_once(spec, "mark_middle")
     note_left_out: Any = make_note_left_out(spec) if overlooks else None
@@ -168,6 +195,8 @@ def make(spec: Spec):
             for k in range(count):
                 contact = contacts[total]
                 point = points[k]
+                if own_normals:
+                    n = point_normal(scratch.manifold, k)
                 contact.pair, contact.a, contact.b = p, owner_i, owner_j
                 contact.key = pairs[p].key
                 contact.feature = point.feature

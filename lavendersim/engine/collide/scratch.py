@@ -37,7 +37,8 @@ class Manifold(NamedTuple):
     """What a pair's kernel writes: contact points that share a normal."""
 
     points: np.ndarray  # (n,) POINT; behind those of the manifold the candidates left out
-    normal: np.ndarray  # (3,) unit, from A to B
+    normal: np.ndarray  # (3,) unit, from A to B; where pairs have them (`own_normals`), those of
+    # single points behind it
     reduction: np.ndarray  # (2,) int64, see `manifold.point`
 
 
@@ -99,14 +100,18 @@ def _of_the_box() -> tuple[int, int]:
     return _longest_and_most(hull_geometry())
 
 
-def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
-    """Return scratch for one thread, around the tables of a scene's hulls."""
+def allocate_scratch(geometry: HullGeometry | None = None, own_normals: bool = False) -> Scratch:
+    """Return scratch for one thread, around the tables of a scene's hulls.
+
+    own_normals: whether points of a manifold may have normals of their own.
+    """
     hulls = hull_geometry() if geometry is None else geometry
     longest, most = _longest_and_most(hulls) if len(hulls.vertex_start) > 2 else _of_the_box()
 
     # A polygon of n corners cut by m sides has at most n + 2 m (manifold/polygon_clip), and a cut
     # looks for two rows more; two halves.
     rows = max(2 * (3 * longest + 2), most)
+    points = max(MANIFOLD_POINTS, rows)
 
     def box() -> BoxFrame:
         return BoxFrame(
@@ -124,8 +129,8 @@ def allocate_scratch(geometry: HullGeometry | None = None) -> Scratch:
 
     return Scratch(
         manifold=Manifold(
-            points=np.zeros(max(MANIFOLD_POINTS, rows), _POINT),
-            normal=np.zeros(3),
+            points=np.zeros(points, _POINT),
+            normal=np.zeros(3 + (3 * points if own_normals else 0)),
             reduction=np.zeros(2, np.int64),
         ),
         box_a=box(),

@@ -20,7 +20,15 @@ class ShapePair(NamedTuple):
     file: str  # of `pairs`, whose `make(spec)` returns its kernel
     # Whether its points hold the true distance at any margin: the time of impact then needs no GJK.
     closed_form: bool = False
+    # Whether each of its points has a normal of its own (`manifold.own_normals`).
+    own_normals: bool = False
+    inside: bool = False  # whether B is inside of A, whose wall curves towards it
     kind: int = -1  # number of the pair in PAIR.kind: its place among those declared
+
+    @property
+    def convex(self) -> bool:
+        """Whether both shapes are bounded and convex."""
+        return "plane" not in self.shapes and not self.own_normals
 
     def make(self, spec: Spec) -> Any:
         """Return the kernel that writes the manifold of A, of the first shape, and B."""

@@ -15,6 +15,7 @@ the start of a step does: up to m |g| dt times the speed in every bounce (`measu
 
 from math import hypot, inf, sqrt
 
+from ..records import CAVITIES
 from ..terms import RowTerms
 from .decision import BodyFacts, Decision, Facts, meeting
 from .effect import Column, Effect, Fields, Hooks, kernel
@@ -25,6 +26,8 @@ FAST = 0.5
 SAFETY = 1.5
 # A floor is across gravity when the cosine between them is 1 to so much [-].
 LEVEL = 1e-9
+# Where a step leads into these is seen from where it begins.
+UNSWEPT = CAVITIES | {"plane"}
 
 
 def decide(facts: Facts) -> Decision:
@@ -35,9 +38,11 @@ def decide(facts: Facts) -> Decision:
     between = [
         pair
         for pair in meeting(facts)
-        if "plane" not in (bodies[pair.a].shape, bodies[pair.b].shape)
+        if UNSWEPT.isdisjoint((bodies[pair.a].shape, bodies[pair.b].shape))
     ]
     if not between:
+        if any(body.shape in CAVITIES for body in facts.bodies):
+            return Decision(False, "only planes and cavities can be run into, from one side")
         return Decision(False, "only planes can be run into, and their normal is everywhere alike")
     source = _source_of_energy(facts)
     if source:

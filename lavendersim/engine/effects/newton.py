@@ -39,8 +39,8 @@ TORQUES = {  # by the term of rows: the same of psi, and the limits of a round [
         ("limit_roll", "f8"),
     ],
 }
-# Shapes that touch each other, or a plane, in one point.
-ONE_POINT = {"sphere", "plane", "ellipsoid"}
+# Shapes that touch each other in one point, with those that they may touch in one.
+ONE_POINT = {"sphere", "plane", "ellipsoid", "bowl", "drum"}
 
 
 def decide(facts: Facts) -> Decision:

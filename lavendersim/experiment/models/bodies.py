@@ -10,7 +10,15 @@ from pydantic import Field
 from lavendersim.cell.body import Release
 from lavendersim.cell.surface import Surface
 from lavendersim.engine.effects import BODY_KEYS, MOTION_KEYS
-from lavendersim.experiment.models.shapes import SIMPLE, SOLIDS, TURNED, Orientation, Shape, Solid
+from lavendersim.experiment.models.shapes import (
+    CAVITIES,
+    SIMPLE,
+    SOLIDS,
+    TURNED,
+    Orientation,
+    Shape,
+    Solid,
+)
 from lavendersim.experiment.models.tree import PRESCRIBE_MOTION
 from lavendersim.experiment.text.place import Place
 from lavendersim.quantities.chosen_kind import ByKind
@@ -96,6 +104,8 @@ class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: i
         kind = at.get("shape", "kind").text
         if kind == "plane":
             _plane_rules(at)
+        elif kind in CAVITIES:
+            _cavity_rules(at, kind)
         elif kind in SOLIDS:
             if "position" in cls.model_fields:  # a body that stands alone
                 _exactly_one(at, ("position", "release"), "[m], or a release above a plane")
@@ -115,7 +125,7 @@ class Body(_Matter):
     """One rigid body. Planes are static; a movable body has exactly one of mass and density."""
 
     shape: Shape = Field(
-        description="plane, sphere, box, capsule, cylinder, ellipsoid, hull or compound"
+        description="plane, sphere, box, capsule, cylinder, ellipsoid, hull, compound, bowl or drum"
     )
     position: Position | None = Field(
         default=None,
@@ -194,6 +204,27 @@ def _plane_rules(at: Place) -> None:
         instead = "; its normal and offset say where it is" if key in _OF_PLACES else ""
         has = f"a plane has no {key.replace('_', ' ')}{instead}"
         at.refuse(mark, f"{key}: {at} is a plane; {has}")
+
+
+def _cavity_rules(at: Place, kind: str) -> None:
+    if at.written("position") is None:
+        at.lacks(
+            "position", "[m] of its centre" if kind == "bowl" else "[m] of a point of its axis"
+        )
+    constrained = [key for key in _CONSTRAIN if at.get(key).is_true]
+    always = f"a {kind}, which is fixed or has its motion prescribed"
+    if at.get("fixed").content is False:
+        at.refuse(at.get("fixed").mark, f"fixed: {at} is {always}")
+    if len(constrained) > 1:
+        at.refuse_both(constrained[:2])
+    elif constrained and constrained[0] != "fixed":
+        _prescribed_rules(at)
+    else:
+        for key, mark in at.given((*_OF_MOVING, *OF_PRESCRIBED)):
+            words = " or ".join(f"{word}: true" for word in PRESCRIBE_MOTION)
+            at.refuse(mark, f"{key}: {at} is fixed, as a {kind} is; expected {words} beside it")
+    for key, mark in at.given((*_OF_MOVABLE, "release")):
+        at.refuse(mark, f"{key}: {at} is {always}; it has no {key.replace('_', ' ')}")
 
 
 def _exactly_one(at: Place, keys: tuple[str, str], meaning: str) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Union
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
-from lavendersim.cell.shapes import PRIMITIVES, Plane, Primitive
+from lavendersim.cell.shapes import PRIMITIVES, Bowl, Drum, Plane, Primitive
 from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.kinds import kind_of
 from lavendersim.quantities.model import ConfigModel
@@ -72,7 +72,8 @@ SIMPLE: Final[tuple[type[Primitive | Polyhedral], ...]] = (
     Hull,
 )
 KINDS: Final = tuple(kind_of(model) for model in SIMPLE)
-SOLIDS: Final = (*KINDS, "compound")  # all but planes
+SOLIDS: Final = (*KINDS, "compound")  # all but planes and cavities
+CAVITIES: Final = tuple(kind_of(model) for model in (Bowl, Drum))
 # Those whose principal axes are not those of their frame.
 TURNED: Final = tuple(kind for kind in SOLIDS if kind not in map(kind_of, PRIMITIVES))
 
@@ -124,7 +125,7 @@ class Compound(ConfigModel):
 
 if TYPE_CHECKING:
     Solid = Primitive | Polyhedral | Compound
-    Shape = Plane | Primitive | Polyhedral | Compound
+    Shape = Plane | Primitive | Polyhedral | Compound | Bowl | Drum
 else:
     Solid = Union[(*SIMPLE, Compound)]
-    Shape = Annotated[Union[(Plane, Solid)], ByKind(), OrName()]  # noqa: UP007
+    Shape = Annotated[Union[(Plane, Solid, Bowl, Drum)], ByKind(), OrName()]  # noqa: UP007

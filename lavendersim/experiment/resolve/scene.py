@@ -7,7 +7,7 @@ from typing import Any
 
 from lavendersim.cell.body import CellBody
 from lavendersim.cell.scene import CellForce, CellScene
-from lavendersim.cell.shapes import CellShape, Plane
+from lavendersim.cell.shapes import Cavity, CellShape, Plane
 from lavendersim.cell.shared_parts import shared
 from lavendersim.engine.effects import BODY_KEYS, SCENE_KEYS, TurnOf
 from lavendersim.experiment.models.bodies import ArrangedBody, Body
@@ -19,6 +19,7 @@ from lavendersim.experiment.models.tree import (
     member_name,
 )
 from lavendersim.experiment.resolve.arrangements import centres, turns_of
+from lavendersim.experiment.resolve.cavities import refuse_what_does_not_fit
 from lavendersim.experiment.resolve.frames import Frames
 from lavendersim.experiment.resolve.gravity import gravity_vector
 from lavendersim.experiment.resolve.placement import below, released_position
@@ -48,7 +49,7 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> tuple[Ce
         if arrangement.first is not None:
             with below(*ARRANGEMENTS, name, "first"):
                 first = CellBody.of(**_matter(arrangement.first, scene))
-        assert not isinstance(one.shape, Plane)
+        assert not isinstance(one.shape, Plane | Cavity)
         places = centres(arrangement, one.shape, one.orientation)
         turns = turns_of(arrangement)
         for number, position in enumerate(places, start=1):
@@ -104,16 +105,20 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> dict[str, Any]:
     """Return the values of a body that stands at the origin; its velocities are as written."""
     surface = surface_of(body.surface, scene)
     prescribed = any(getattr(body, key) for key in PRESCRIBE_MOTION)
-    fixed = body.fixed or prescribed or isinstance(body.shape, Plane)
+    fixed = body.fixed or prescribed or isinstance(body.shape, Plane | Cavity)
     orientation, axes = quaternion_of(body.orientation), IDENTITY
     mass: float | None = None
     inertia: Vector3 | None = None
     shape: CellShape
     if isinstance(body.shape, Plane):
         shape = body.shape.model_copy(update={"normal": unit(body.shape.normal)})
+    elif isinstance(body.shape, Cavity):
+        shape = body.shape
     else:
         with below("shape"):
             shape, volume, (x, y, z), axes = resolve_shape(body.shape)
+            if not fixed:
+                refuse_what_does_not_fit(shape, scene)
         if axes != IDENTITY:
             orientation = product(orientation, axes)
         if not fixed:

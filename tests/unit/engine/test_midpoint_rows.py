@@ -14,7 +14,7 @@ from drawn_contacts import Drawn, drawn, put_vector, random_frame, stacked
 from interpreted import interpreted, records
 from plain_facts import one_row
 
-from lavendersim.engine import midpoint_rows
+from lavendersim.engine import free_flight, midpoint_rows
 from lavendersim.engine.midpoint_rows import (
     AJAR,
     BEFORE,
@@ -72,7 +72,7 @@ class Row:
     def shift(self, dt: float = DT) -> Row:
         kernel = interpreted(midpoint_rows.make_shift(self.spec))
         motion = records(np.zeros(2, dtype(MOTION)))
-        kernel(self.contact, self.lead, motion, one_row(dt=dt, timestep=DT, slop=SLOP))
+        kernel(self.contact, None, self.lead, motion, one_row(dt=dt, timestep=DT, slop=SLOP))
         return self
 
 
@@ -188,7 +188,7 @@ def lasts(**values: float) -> bool:
     motion = records(np.zeros(2, dtype(MOTION)))  # no torque acts: spins are those before
     for i in range(2):
         motion[i].wx, motion[i].wy, motion[i].wz = row.lead[i].wx, row.lead[i].wy, row.lead[i].wz
-    LASTING(contact, row.lead, motion, PARAMS)
+    LASTING(contact, None, row.lead, motion, PARAMS)
     assert (contact.slides, contact.jumps) == (0, 0)
     assert contact.begin_n == contact.middle_n == contact.v_n_pre - contact.dv_n
     return bool(contact.lasts)
@@ -224,7 +224,7 @@ def test_what_a_torque_adds_is_no_approach_of_the_start(axis: str, twisted: int,
     row.contact.v_n_pre = (row.scene.jacobian @ row.scene.motion)[0]
     assert abs(row.contact.v_n_pre) > CALM
     row.contact.target = row.contact.v_n_pre  # of a spring, as `capture` leaves it
-    LASTING(row.contact, row.lead, motion, PARAMS)
+    LASTING(row.contact, None, row.lead, motion, PARAMS)
     assert row.contact.lasts == 1
     assert abs(row.contact.begin_n) < 1e-13  # sums of a dozen numbers near 1
     assert c == 0.0 or abs(row.contact.target) < 1e-13
@@ -349,7 +349,7 @@ def test_nothing_slips_without_friction() -> None:
     assert midpoint_rows.make_begin_slip(STRAIGHT) is None
 
 
-WIDEN = interpreted(midpoint_rows.make_widen(SPEC))
+WIDEN = interpreted(free_flight.make_widen(SPEC))
 
 
 def widened(**values: float) -> float:

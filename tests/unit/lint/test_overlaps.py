@@ -79,3 +79,16 @@ def test_bodies_that_a_joint_joins_may_overlap_and_those_that_still_touch_not() 
 def test_bodies_that_never_move_may_overlap() -> None:
     fixed = [body(name, "box", 0.0).replace("mass: 1", "fixed: true") for name in "ab"]
     assert found(config(*fixed, body("c", "box", 5.0))) == []
+
+
+@pytest.mark.parametrize("cavity", ["bowl", "drum"])
+@pytest.mark.parametrize("shape", ["sphere", "box"])
+def test_a_body_in_the_wall_around_it_is_found_by_how_deep_it_is(cavity: str, shape: str) -> None:
+    """Out along x by 1 m: a corner of the cube is 1.5 m out there, and 0.5 m aside on two sides."""
+    aside = 0.5 if cavity == "bowl" or shape == "sphere" else 0.0
+    farthest = 1.5 if shape == "sphere" else math.sqrt(1.5**2 + 0.5**2 + aside**2)
+    for radius, count in ((farthest - 0.03, 1), (farthest + 1e-9, 0)):
+        wall = f"wall: {{shape: {{kind: {cavity}, radius: {radius!r}}}, position: [0, 0, 10]}}"
+        defects = found(config(wall, body("a", shape, 1.0)))
+        assert len(defects) == count
+        assert all("starts 0.03 m behind the surface of wall" in one.message for one in defects)

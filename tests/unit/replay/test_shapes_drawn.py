@@ -31,3 +31,17 @@ def test_bodies_in_their_order_with_what_is_drawn_of_them() -> None:
     assert [one.fixed for one in (wall, ball, slab, beads)] == [True, False, True, False]
     assert len(beads.pieces) == 3
     assert beads.bounding_radius == 1.25
+
+
+def test_a_cavity_is_drawn_as_what_it_is_around() -> None:
+    cell = made_cell(
+        {
+            "bowl": {"shape": {"kind": "bowl", "radius": 2.0}, "fixed": True},
+            "drum": {"shape": {"kind": "drum", "radius": 2.0}, "fixed": True},
+            "ball": {"shape": BALL},
+        }
+    )
+    bowl, drum, _ = shapes(cell)
+    assert (bowl.kind, bowl.bounding_radius, drum.bounding_radius) == ("bowl", 2.0, 2.0)
+    assert [one.shape.kind for one in (*bowl.pieces, *drum.pieces)] == ["sphere", "cylinder"]
+    assert [one.shape.radius for one in (*bowl.pieces, *drum.pieces)] == [2.0, 2.0]

@@ -140,3 +140,15 @@ def test_hulls_beyond_the_limit_have_no_visual(monkeypatch: pytest.MonkeyPatch) 
     robot = ET.fromstring(robot_description(bodies, np.repeat(POSE, 3, axis=0)))
     counts = {link.attrib["name"]: len(link.findall("visual")) for link in robot.iter("link")}
     assert [counts[name] for name in names] == [6, 0, 1]
+
+
+@pytest.mark.parametrize("kind", ["bowl", "drum"])
+def test_a_cavity_is_drawn_by_bars_between_points_of_its_wall(kind: str) -> None:
+    bars = drawn({"kind": kind, "radius": 2.0})
+    assert len(bars) == (140 if kind == "bowl" else 60)
+    for tag, size, centre, turn in bars:
+        assert tag == "cylinder"
+        for end in (-0.5, 0.5):
+            place = centre + turn @ (0.0, 0.0, end * float(size["length"]))
+            away = np.linalg.norm(place if kind == "bowl" else place[:2])
+            assert away == pytest.approx(2.0, abs=1e-14)

@@ -2,7 +2,7 @@
 
     place bounds    where each body may be in the next steps            `fat_bounds`
     sort, build     a bounding volume hierarchy over them               `tree`
-    walk            pairs of bounds that overlap; planes against all
+    walk            pairs of bounds that overlap; planes and cavities against all
     write           rows of the pair table, ascending in their key      `pair_rows`
 
 The list is valid as long as every body stays in its fat bounds.
@@ -16,10 +16,11 @@ import numpy as np
 
 from ...compile import kernel
 from ...effects import has_hook
-from ...records import COMPOUND, I8, PLANE, ROPE_END, Field, dtype
+from ...records import BOWL, COMPOUND, DRUM, I8, PLANE, ROPE_END, Field, dtype
 from ...row_terms import row_terms
 from ...spec import Spec
 from ..rope import make_count_connections
+from ..shapes import has_cavity
 from .fat_bounds import FAT_BOUNDS, make_is_valid, make_place_bounds
 from .pair_rows import make_put_pair, make_without_joined, make_write_rows
 from .tree import (
@@ -99,7 +100,7 @@ def allocate_broad_phase(body_count: int, pair_capacity: int) -> BroadPhaseWork:
 def make_sort_leaves(spec: Spec):
     """Return `kernel(bodies, work) -> leaves`: bodies with bounds, sorted for the tree."""
     compound, sleeps = has_hook(spec, "place_parts"), has_hook(spec, "update_sleeping")
-    connects = spec.connects
+    connects, cavities = spec.connects, has_cavity(spec)
 
     def sort_leaves(bodies, work):
         fat_bounds, codes, order, leaves = work.fat_bounds, work.codes, work.order, work.leaves
@@ -111,6 +112,9 @@ def make_sort_leaves(spec: Spec):
                 continue
             if connects:
                 if bodies[i].shape == ROPE_END:
+                    continue
+            if cavities:
+                if bodies[i].shape == BOWL or bodies[i].shape == DRUM:
                     continue
             r = fat_bounds[i]
             low_x, low_y, low_z = min(low_x, r.x), min(low_y, r.y), min(low_z, r.z)
@@ -157,7 +161,7 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
     body, and every other row has its own there. Pairs that nothing can push get no row. Rows of
     ropes and joints stay where they are, before all others; bodies that a joint joins are no pair.
     """
-    connects, joins = spec.connects, row_terms(spec).bilateral
+    connects, joins, cavities = spec.connects, row_terms(spec).bilateral, has_cavity(spec)
     count_connections: Any = make_count_connections(spec) if connects else None
     without_joined: Any = make_without_joined(spec) if joins else None
     is_valid, place_bounds, sort_leaves = (
@@ -185,6 +189,11 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
                                 found = put_pair(bodies, templates, a, b, work, found)
                 other = next_group(nodes, starts, groups, nodes[g], other + 1)
         for i in range(bodies.shape[0]):
+            if cavities:  # all that is in one may touch it
+                if bodies[i].shape == BOWL or bodies[i].shape == DRUM:
+                    for k in range(count):
+                        if leaves[k].still == 0:
+                            found = put_pair(bodies, templates, i, leaves[k].body, work, found)
             if bodies[i].shape != PLANE:
                 continue
             nx, ny, nz = bodies[i].hx, bodies[i].hy, bodies[i].hz

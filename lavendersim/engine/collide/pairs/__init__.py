@@ -21,6 +21,11 @@ def by_gjk(a: str, b: str) -> ShapePair:
     return ShapePair(f"{b}_{a}", (a, b), "convex")
 
 
+def inside(cavity: str, b: str, file: str) -> ShapePair:
+    """Return the pair of a cavity and what is in it, whose points have normals of their own."""
+    return ShapePair(f"{b}_{cavity}", (cavity, b), f"{file}_cavity", own_normals=True, inside=True)
+
+
 def smooth(a: str) -> ShapePair:
     """Return the pair of a shape with an ellipsoid: Newton's method behind GJK and EPA."""
     return ShapePair(f"ellipsoid_{a}", (a, "ellipsoid"), "ellipsoid_convex")
@@ -54,6 +59,18 @@ DECLARED = (
     smooth("cylinder"),
     smooth("hull"),
     smooth("ellipsoid"),
+    *(
+        inside(cavity, shape, file)
+        for cavity in ("bowl", "drum")
+        for shape, file in (
+            ("sphere", "sphere"),
+            ("capsule", "capsule"),
+            ("box", "box"),
+            ("hull", "hull"),
+            ("cylinder", "cylinder"),
+            ("ellipsoid", "ellipsoid"),
+        )
+    ),
 )
 
 
