@@ -1,7 +1,8 @@
 """What rounds of Newton's method leave begins again from inside the cones, and rounds follow.
 
 Then sweeps take turns with rounds, each from where the other ended: many sweeps change who holds,
-slides and opens where a round would not leave its own. That is for a few steps in thousands.
+slides and opens where a round would not leave its own. That is for a few steps in thousands, and
+the longest turns only where little is left.
 
 Where every contact is a cone, whatever else an engine knows: a scene's bits are those of an engine
 without. What is left is no worse than before.
@@ -26,7 +27,9 @@ from .torques import make_limits_torque
 # Steps of the rounds that follow: from near their end they take a few.
 FINISHING = 40.0
 # Sweeps of the first turn where that leaves something, twice as many of each next one.
-SWEEPS, TURNS = 1000, 4
+SWEEPS, TURNS = 1000, 6
+# Turns at most where more is left than so many times what is enough.
+FEWER_TURNS, NEAR = 4, 10.0
 # Columns of `Envelope.inside` behind those of `inside_cones`: the best impulses [N s]
 BEST_N, BEST_1, BEST_2 = range(3, 6)
 
@@ -102,7 +105,7 @@ def make_begin_again(spec: Spec) -> Any:
                 steps, least = end_with_rounds(system, workspace, size, most, residuals, least)
                 made += steps
         for turn in range(TURNS):
-            if not least <= enough:
+            if not least <= enough and (turn < FEWER_TURNS or least <= NEAR * enough):
                 for _ in range(SWEEPS << turn):
                     sweep(system, params)
                 steps, least = end_with_rounds(system, workspace, size, most, residuals, least)
