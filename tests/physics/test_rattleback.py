@@ -1,7 +1,7 @@
 """A rattleback: the coupling of spin and rocking by skew inertia, against an ODE of rolling.
 
-In the body's frame, with k the upward unit vector, E = diag(a, b, c) of its lower surface, s from the
-centre to the contact, F what the floor pushes with, for a unit mass:
+In the body's frame, with k the upward unit vector, E = diag(a, b, c) of its lower surface, s from
+the centre to the contact, F what the floor pushes with, for a unit mass:
     s = -E^2 k/|E k|,   v = -w x s,   dv/dt + w x v = F - g k,   I dw/dt + w x I w = s x F
 F is eliminated: (I - [s]^2) dw/dt = s x (g k - w x ds/dt + w x v) - w x I w.
 """
@@ -14,7 +14,8 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 from shared_runs import GRAVITY, States, orders, run_scenes
 
-AXES, SKEWED, SKEW = np.array([0.2, 0.06, 0.04]), np.array([0.14, 0.025, 0.03]), 15.0  # [m], [degree]
+AXES, SKEWED = np.array([0.2, 0.06, 0.04]), np.array([0.14, 0.025, 0.03])  # semi-axes [m]
+SKEW = 15.0  # [degree]
 SPIN, ROCK = -2.0, 0.6  # [rad/s]
 RATES, DURATION = (480, 960, 1920), 0.5  # steps a second, [s]
 LONG, LONG_RATE = 3.9, 1000  # until it has turned back

@@ -1,8 +1,8 @@
-"""A tippe top, sliding: Jellett's integral stays to order 2 whatever friction does, and it turns over.
+"""A tippe top, sliding: Jellett's integral stays to order 2 whatever friction does; it turns over.
 
-J = -L . s, with L the angular momentum about the centre of mass and s from there to the contact. s =
-a e - R z of a sphere whose centre is a along the axis e, so that ds/dt = a w x e; L = A (w - w_e e) +
-C w_e e is across that, and dL/dt = s x F is across s, for any F.
+J = -L . s, with L the angular momentum about the centre of mass and s from there to the contact.
+s = a e - R z of a sphere whose centre is a along the axis e, so that ds/dt = a w x e; L = A (w -
+w_e e) + C w_e e is across that, and dL/dt = s x F is across s, for any F.
 """
 
 from __future__ import annotations

@@ -327,7 +327,7 @@ def config_of(seed: str, plan: Drawn) -> dict[str, Any]:
         "connections": connections(pen, bodies, sizes, movable),
     }
     joined = any(one["kind"] in JOINTS for one in scene["connections"].values())
-    scene["springs"] = [] if joined else springs(pen, bodies, movable)
+    scene["springs"] = springs(pen, bodies, movable)
     times = {"timestep": numerics["timestep"], "duration": pen.duration}
     return {
         "scene": scene,
