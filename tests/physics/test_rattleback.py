@@ -32,13 +32,13 @@ def scene(rate: int, duration: float) -> str:
     parts = ", ".join([ellipsoid(AXES), *[ellipsoid(SKEWED, SKEW)] * 2])
     return f"""
 scene:
-  surfaces: {{rough: {{friction: 2}}}}
+  surfaces: {{frictional: {{friction: 2}}}}
   bodies:
-    floor: {{shape: {{kind: plane}}, surface: rough}}
+    floor: {{shape: {{kind: plane}}, surface: frictional}}
     stone:
       shape: {{kind: compound, parts: [{parts}]}}
       mass: 1.0
-      surface: rough
+      surface: frictional
       position: [0, 0, {AXES[2]}]
       velocity: [{ROCK * AXES[2]}, 0, 0]
       angular_velocity: [0, {ROCK}, {SPIN}]

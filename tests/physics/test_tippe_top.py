@@ -46,7 +46,7 @@ duration: {DURATION}
 @pytest.fixture(scope="module")
 def ran() -> dict[str, States]:
     scenes = {f"at {rate}": scene(rate, 0.1) for rate in RATES}
-    return run_scenes(scenes | {"rough": scene(RATES[-1], 0.15)})
+    return run_scenes(scenes | {"frictional": scene(RATES[-1], 0.15)})
 
 
 def axis(states: States) -> np.ndarray:
@@ -73,7 +73,7 @@ def test_jellett_s_integral_stays_to_order_2(ran: dict[str, States]) -> None:
 
 
 def test_other_friction_leaves_it_as_well(ran: dict[str, States]) -> None:
-    values = jellett(ran["rough"])
+    values = jellett(ran["frictional"])
     assert abs(values / values[0] - 1.0).max() < (SPIN / RATES[-1]) ** 2 / 12.0
 
 
