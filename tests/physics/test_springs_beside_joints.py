@@ -155,7 +155,7 @@ def test_energy_of_what_flies_stays(ran: dict[str, States]) -> None:
 
 
 def test_a_spring_that_no_step_resolves_gives_no_energy(ran: dict[str, States]) -> None:
-    """Steps that are not found are placed and lose; they tear the hinge, which projection closes."""
+    """Steps that are not found are placed and lose energy; projection closes the torn hinge."""
     for name in ("stiff", "flying stiff"):
         states = ran[name]
         course = energy(states)
