@@ -113,9 +113,9 @@ FAMILIES = (
             "sphere_cylinder",
         ),
     ),
-    # What gives way, and what ropes and springs tie; what joints hold.
+    # What gives way, and what ropes and springs tie; what joints hold, beside springs.
     Family(texts=(scenes.SPRINGY, scenes.LINKED), shape_pairs=BALLS_AND_BOXES),
-    Family(("effects/joint", "effects/motor"), (scenes.JOINTED,), BALLS_AND_BOXES),
+    Family(("effects/joint", "effects/motor"), (scenes.JOINTED,), BALLS_AND_BOXES, ("spring",)),
     Family(texts=(scenes.JOINTED_APART,)),
     Family(("effects/rope", "effects/spring", "hard/contact/soft_to_stiff"), effects=("drag",)),
     Family(("effects/falling_restitution", "effects/cohesion")),

@@ -281,7 +281,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
         classify(contacts, count, motion, params)
         working = note_working(state, rows, count)
         if done or not working:
-            if not gains(state, rows, count, beside, dt):
+            if not gains(state, rows, count, beside, params):
                 return midway
         counters.spring_not_converged += 1
         if midway:
@@ -322,14 +322,14 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
                 if number == SIZES - 1 and last == SHARES - 1:
                     share = 0.0
                 put(state, bodies, count, share, dt)
-                if not gains(state, bodies, count, beside, dt):
+                if not gains(state, bodies, count, beside, params):
                     return False
                 share *= 0.5
             size *= 0.25
         # What contact springs give where nothing moves is taken from what stands.
         for _ in range(SLOWER):
             put(state, bodies, count, 0.0, dt)
-            if not gains(state, bodies, count, beside, dt):
+            if not gains(state, bodies, count, beside, params):
                 return False
         return False
 

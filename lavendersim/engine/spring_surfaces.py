@@ -1,8 +1,8 @@
 """Unions whose surfaces do work on them or store energy: what they have then tells nothing.
 
 A union (`spring_unions`) is such where what pushes or ties it is kinematic and moves, a surface
-that pushes it moves along itself, or its contact gives way by the regularised law. What surfaces
-elsewhere do changes nothing of it. What a `contact_spring` stores is known.
+that pushes it moves along itself, its contact gives way by the regularised law, or a motor drives
+it. What surfaces elsewhere do changes nothing of it. What a `contact_spring` stores is known.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from .compile import kernel
 from .contact import make_normal_velocity
 from .contact_spring_law import make_stored
 from .effects import has_hook
-from .row_terms import row_terms
+from .row_terms import make_acts, row_terms
 from .spec import Spec
 from .step_terms import step_terms
 
@@ -26,6 +26,7 @@ def make_note_working(spec: Spec) -> Any:
     kinematic = step_terms(spec).kinematic
     compliance, springs = row_terms(spec).compliant, row_terms(spec).elastic
     moving, turns = has_hook(spec, "surface_velocity"), step_terms(spec).turns
+    acts, bounded = make_acts(spec), row_terms(spec).bounded
 
     def moves(body, v):
         found = False
@@ -60,9 +61,11 @@ def make_note_working(spec: Spec) -> Any:
             contact = contacts[c]
             a, b = rows[contact.a], rows[contact.b]
             group = max(a.group, b.group)
-            if contact.lambda_n > 0.0 and group > 0:
+            if group > 0 and acts(contact):
                 works = moves(a, velocities[contact.a]) or moves(b, velocities[contact.b])
                 works = works or slides(a) or slides(b)
+                if bounded:
+                    works = works or contact.motor == 1
                 if compliance:
                     gives_way = state.pairs[contact.pair].compliance > 0.0
                     if springs:

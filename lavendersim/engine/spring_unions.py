@@ -1,5 +1,7 @@
 """Unions: bodies that springs join and contacts push, their energy, and where a step moves them.
 
+Joints hold with an impulse of either sign, and join as contacts that push do.
+
 A union is solved as one where springs and contacts act on each other (`spring_contacts`). Its first
 body has its number, BODY.group, and tells of all, BODY.again.
 """
@@ -10,7 +12,7 @@ from typing import Any, NamedTuple
 
 from .compile import kernel
 from .integrate import make_displace
-from .row_terms import row_terms
+from .row_terms import make_acts, row_terms
 from .spec import Spec
 from .spring_surfaces import make_stored_in_contacts
 from .spring_turn import BOTH
@@ -31,7 +33,7 @@ class Unions(NamedTuple):
     """Kernels of the unions of a part of a step."""
 
     join: Any  # (links, rows, contacts, count, first) -> how many springs unions have
-    gains: Any  # (state, rows, count, beside, dt) -> whether they win energy
+    gains: Any  # (state, rows, count, beside, params) -> whether they win energy
     pull: Any  # (links, contacts, bodies, count): notes what forces change of their centres
     put: Any  # (state, rows, count, t, dt): where they are moved to
     part: Any  # (links, rows, motion) -> whether bodies are in none any more
@@ -41,9 +43,9 @@ def make_unions(spec: Spec, place: Any) -> Unions:
     """Return the kernels; place: kernel of `effects.spring`. rows: bodies where the step begins."""
     from .rotation import inertia_times
 
-    turns = step_terms(spec).turns
+    turns, acts = step_terms(spec).turns, make_acts(spec)
     displace = make_displace(spec)
-    yields = row_terms(spec).elastic
+    yields, holds = row_terms(spec).elastic, row_terms(spec).bilateral
     stored_in_contacts: Any = make_stored_in_contacts(spec) if yields else None
 
     def unite(a, b):
@@ -68,10 +70,10 @@ def make_unions(spec: Spec, place: Any) -> Unions:
                 if links[k].active == 1:
                     changed = unite(rows[links[k].a], rows[links[k].b]) or changed
             for c in range(count):
-                if contacts[c].lambda_n > 0.0:
+                if acts(contacts[c]):
                     changed = unite(rows[contacts[c].a], rows[contacts[c].b]) or changed
         for c in range(count):
-            if contacts[c].lambda_n > 0.0:
+            if acts(contacts[c]):
                 for i in (contacts[c].a, contacts[c].b):
                     if rows[i].inv_m > 0.0:
                         rows[i].again = max(rows[i].again, PUSHED)
@@ -125,10 +127,20 @@ def make_unions(spec: Spec, place: Any) -> Unions:
 
     note_shift = kernel(note_shift, spec)
 
-    def gains(state, rows, count, beside, dt):
+    def left_by_joints(state, count, params):
+        # Work of rows whose ends part by what solves leave, on either side [J].
+        work = 0.0
+        for c in range(count):
+            if state.contacts[c].bilateral == 1:
+                work += abs(state.contacts[c].lambda_n)
+        return work * max(params.tolerance, 0.0)
+
+    left_by_joints = kernel(left_by_joints, spec)
+
+    def gains(state, rows, count, beside, params):
         # Whether unions that nothing works on (`spring_surfaces`) have more energy where the step
         # leads to, or it leads nowhere. rows: where it begins.
-        moved, moving = beside.bodies, beside.velocities
+        moved, moving, dt = beside.bodies, beside.velocities, params.dt
         links, velocities, motion = state.links, state.velocities, state.motion
         won, had = 0.0, 0.0
         for i in range(rows.shape[0]):
@@ -169,9 +181,15 @@ def make_unions(spec: Spec, place: Any) -> Unions:
             stored_more, stored_had = stored_in_contacts(state.contacts, count, rows, moving)
             if stored_had > 0.0:
                 beside.lost[0] = max(-won - stored_more, 0.0)
-                return not won + stored_more <= YIELDED * (had + stored_had)
+                most = YIELDED * (had + stored_had)
+                if holds:
+                    most += left_by_joints(state, count, params)
+                return not won + stored_more <= most
         beside.lost[0] = max(-won, 0.0)
-        return not won <= GAINED * had
+        most = GAINED * had
+        if holds:
+            most += left_by_joints(state, count, params)
+        return not won <= most
 
     gains = kernel(gains, spec)
 
@@ -184,7 +202,7 @@ def make_unions(spec: Spec, place: Any) -> Unions:
                 anchored = anchored or a.inv_m == 0.0 or b.inv_m == 0.0
         for c in range(count):
             a, b = rows[contacts[c].a], rows[contacts[c].b]
-            if contacts[c].lambda_n > 0.0 and max(a.group, b.group) == group:
+            if acts(contacts[c]) and max(a.group, b.group) == group:
                 anchored = anchored or a.inv_m == 0.0 or b.inv_m == 0.0
         return anchored
 

@@ -327,7 +327,8 @@ def config_of(seed: str, plan: Drawn) -> dict[str, Any]:
         "connections": connections(pen, bodies, sizes, movable),
     }
     joined = any(one["kind"] in JOINTS for one in scene["connections"].values())
-    scene["springs"] = [] if joined else springs(pen, bodies, movable)
+    apart = joined and numerics["integrator"] != "midpoint_contact"  # refused beside each other
+    scene["springs"] = [] if apart else springs(pen, bodies, movable)
     times = {"timestep": numerics["timestep"], "duration": pen.duration}
     return {
         "scene": scene,

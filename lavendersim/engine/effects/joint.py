@@ -65,9 +65,12 @@ def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
         yield ("numerics", "accuracy"), f"{has}, and substeps have none; leave it out"
     if numerics.sleeping:
         yield ("numerics", "sleeping"), f"{has}, and what they hold does not sleep; leave it out"
-    if config.scene.springs:
-        sentence = f"{has}, and a step has one of the two; leave one of them out"
-        yield ("scene", "springs"), sentence
+    if config.scene.springs and numerics.integrator != "midpoint_contact":
+        sentence = (
+            f"{has} and springs, which only midpoint_contact finds together; "
+            "expected midpoint_contact"
+        )
+        yield ("numerics", "integrator"), sentence
     if config.study.mistake != "none":
         yield ("study", "mistake"), f"{has}, which have none; leave it out"
     if config.record.problems != "none":

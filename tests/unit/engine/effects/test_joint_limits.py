@@ -43,11 +43,6 @@ def test_numerics_that_joints_cannot_have_are_refused_at_their_place(key: str) -
     ("old", "new", "place"),
     [
         (
-            "  connections:",
-            "  springs: [{a: hook, b: bob, stiffness: 9}]\n  connections:",
-            "5:3",
-        ),
-        (
             "numerics: {timestep: 1/100}",
             "study: {mistake: capture_in_sweeps}\nnumerics: {preset: chapter, tolerance: 1e-9}",
             "7:9",
@@ -62,6 +57,21 @@ def test_sections_that_joints_cannot_have_are_refused_at_their_place(
         load_experiment_text(TEXT.replace(old, new), "x.yaml").cells()
     assert "the scene has joints" in str(refused.value)
     assert f"x.yaml:{place}" in str(refused.value)
+
+
+@pytest.mark.parametrize("integrator", ["midpoint", "semi_implicit_euler"])
+def test_springs_beside_joints_are_refused_where_they_are_not_found_together(
+    integrator: str,
+) -> None:
+    springs = "  springs: [{a: hook, b: bob, stiffness: 9}]\n  connections:"
+    text = TEXT.replace("  connections:", springs)
+    load_experiment_text(text, "x.yaml").cells()
+    written = f"integrator: {integrator}"
+    text = text.replace("{timestep: 1/100}", f"{{timestep: 1/100, {written}}}")
+    with pytest.raises(ConfigError) as refused:
+        load_experiment_text(text, "x.yaml").cells()
+    assert "integrator: the scene has joints and springs" in str(refused.value)
+    assert f"x.yaml:8:{text.splitlines()[7].index(written) + 1}" in str(refused.value)
 
 
 @pytest.mark.parametrize("change", ["teleport: [0, 0, 3]", "orientation: [0, 1, 0, 0]"])
