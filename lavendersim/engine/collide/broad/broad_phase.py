@@ -209,10 +209,9 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
     find_pairs = kernel(find_pairs, spec)
 
     def broad_phase(bodies, velocities, pairs, templates, params, work):
-        state, kept, rows = work.state[0], 0, pairs
+        state, kept = work.state[0], 0
         if connects:
             kept = count_connections(pairs)
-            rows = pairs[kept:]
         if state.listed == 1:
             if is_valid(bodies, velocities, params, work.fat_bounds):
                 return kept + state.count
@@ -223,9 +222,9 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
             if found <= work.found.first.shape[0]:
                 found = without_joined(bodies, pairs, kept, work, found)
         state.needed = kept + found
-        if found > min(rows.shape[0], work.found.first.shape[0]):
+        if found > min(pairs.shape[0] - kept, work.found.first.shape[0]):
             return -1
-        write_rows(bodies, templates, work, found, rows)
+        write_rows(bodies, templates, work, found, pairs, kept)
         state.listed, state.count = 1, found
         state.rebuilds += 1
         return kept + found

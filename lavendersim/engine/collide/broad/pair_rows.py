@@ -90,8 +90,9 @@ def make_without_joined(spec: Spec):
 
 
 def make_write_rows(spec: Spec, surface: Sequence[str]):
-    """Return `kernel(bodies, templates, work, found, pairs)`; surface: fields of the templates.
+    """Return `kernel(bodies, templates, work, found, pairs, first)`: rows from the first one on.
 
+    surface: fields of the templates.
     Two stable counting sorts, by the second and then by the first body: linear whatever the keys.
     """
     copy_surface = make_copy_fields(spec, surface)
@@ -111,13 +112,13 @@ def make_write_rows(spec: Spec, surface: Sequence[str]):
 
     sort = kernel(sort, spec)
 
-    def write_rows(bodies, templates, work, found, pairs):
+    def write_rows(bodies, templates, work, found, pairs, first):
         bodies_count, by_second, in_order = bodies.shape[0], work.sorted, work.found
         sort(work.found.second, work.found, by_second, work.counts, bodies_count, found)
         sort(by_second.first, by_second, in_order, work.counts, bodies_count, found)
         for p in range(found):
             i, j = in_order.first[p], in_order.second[p]
-            template, row = templates[bodies[i].material, bodies[j].material], pairs[p]
+            template, row = templates[bodies[i].material, bodies[j].material], pairs[first + p]
             row.kind, row.key = template.kind, i * bodies_count + j
             if template.swap == 1:
                 row.a, row.b = j, i

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
+import pytest
 from interpreted import interpreted, records
 
 from lavendersim.engine.collide.broad.broad_phase import allocate_broad_phase
@@ -42,7 +43,9 @@ def put(bodies, templates, pairs, room: int):
     return work, found
 
 
-def test_rows_are_those_of_a_sort_by_both_bodies(rng) -> None:
+@pytest.mark.parametrize("first", [0, 3])
+def test_rows_are_those_of_a_sort_by_both_bodies(rng, first: int) -> None:
+    """From the first row on that is free: before it are those of ropes and joints."""
     templates, bodies = table(rng), bodies_of(rng.integers(0, 3, N))
     every = list(combinations(range(N), 2))
     for count in (0, 1, 8, len(every)):
@@ -54,16 +57,17 @@ def test_rows_are_those_of_a_sort_by_both_bodies(rng) -> None:
             p for p in chosen if templates[material[p[0]], material[p[1]]]["kind"] >= 0
         )
         assert found == len(expected)
-        rows = np.zeros(len(every), dtype(PAIR, SURFACE))
+        rows = np.zeros(first + len(every), dtype(PAIR, SURFACE))
         write = interpreted(make_write_rows(SPEC, [name for name, _ in SURFACE]))
-        write(records(bodies), records(templates), records(work), found, records(rows))
-        for row, (i, j) in zip(rows[:found], expected, strict=True):
+        write(records(bodies), records(templates), records(work), found, records(rows), first)
+        assert not rows[:first]["kind"].any()
+        for row, (i, j) in zip(rows[first : first + found], expected, strict=True):
             template = templates[material[i], material[j]]
             assert row["key"] == i * N + j
             assert (row["a"], row["b"]) == ((j, i) if template["swap"] else (i, j))
             for name in ("kind", "friction", "restitution"):
                 assert row[name] == template[name]
-        assert not rows[found:]["key"].any()
+        assert not rows[first + found :]["key"].any()
 
 
 def test_pairs_beyond_the_room_are_counted_and_not_kept(rng) -> None:
@@ -78,5 +82,5 @@ def test_a_template_without_a_surface_gives_its_kind_alone(rng) -> None:
     work, found = put(bodies, templates, [(1, 0)], 1)
     rows = np.zeros(1, dtype(PAIR))
     make = interpreted(make_write_rows(SPEC, []))
-    make(records(bodies), records(templates), records(work), found, records(rows))
+    make(records(bodies), records(templates), records(work), found, records(rows), 0)
     assert rows[0].tolist() == (1, 0, 1, 1)  # a, b by the template's swap, its kind, key 0 N + 1
