@@ -7,6 +7,7 @@ keeps to itself.
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from copy import copy
@@ -111,6 +112,23 @@ def shortened() -> Iterator[None]:
         _events.start_event, _events.end_event = begun, ended
         if scheme:
             scheme._markup = coloured
+
+
+# Calls of Python that may be inside of each other while kernels are compiled. A part is compiled
+# where its caller is typed, some fifty calls deeper, and an engine of all shapes and effects has
+# more than twenty parts in a row.
+NESTED_CALLS = 5000
+
+
+@contextmanager
+def nested() -> Iterator[None]:
+    """Let calls nest as deep as parts of kernels do, while the compiler's lock is held."""
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(before, NESTED_CALLS))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(before)
 
 
 _signatures: dict[tuple[Any, ...], inspect.Signature] = {}

@@ -30,7 +30,7 @@ from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import NativeLowering
 from numba.core.typing.templates import make_concrete_template, signature
 
-from .compiler_shortcuts import packer_of, quick, shortened
+from .compiler_shortcuts import nested, packer_of, quick, shortened
 from .field_places import composed_in, places_in
 from .kernel_lowering import KernelLowering, is_direct, names_places
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of
@@ -335,7 +335,7 @@ class Kernel(CPUDispatcher):
 
     def compile(self, sig: Any) -> Any:
         """Compile for Python, which needs a door."""
-        with global_compiler_lock, shortened():
+        with global_compiler_lock, shortened(), nested():
             args = tuple(normalize_signature(sig)[0])
             self.typingctx.refresh()
             self.targetctx.refresh()

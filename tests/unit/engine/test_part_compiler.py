@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import numpy as np
@@ -198,6 +199,25 @@ except RuntimeError as error:
 else:
     print("not refused")
 """
+
+
+def test_forty_parts_in_a_row_are_compiled_each_inside_of_its_caller() -> None:
+    """Python lets a thousand calls nest, which are some twenty parts."""
+
+    def begin(x):
+        return x + 1.0
+
+    def calling(part):
+        def one_more(x):
+            return part(x) + 1.0
+
+        return inner(one_more)
+
+    part, before = inner(begin), sys.getrecursionlimit()
+    for _ in range(39):
+        part = calling(part)
+    assert calling(part)(0.5) == 41.5
+    assert sys.getrecursionlimit() == before
 
 
 @pytest.mark.parametrize(("first", "does", "do"), [(0, "does", "do not"), (1, "does not", "do")])
