@@ -201,8 +201,8 @@ else:
 """
 
 
-def test_forty_parts_in_a_row_are_compiled_each_inside_of_its_caller() -> None:
-    """Python lets a thousand calls nest, which are some twenty parts."""
+def test_sixty_parts_in_a_row_are_compiled_each_inside_of_its_caller() -> None:
+    """Python lets a thousand calls nest, which are some forty parts."""
 
     def begin(x):
         return x + 1.0
@@ -214,9 +214,9 @@ def test_forty_parts_in_a_row_are_compiled_each_inside_of_its_caller() -> None:
         return inner(one_more)
 
     part, before = inner(begin), sys.getrecursionlimit()
-    for _ in range(39):
+    for _ in range(59):
         part = calling(part)
-    assert calling(part)(0.5) == 41.5
+    assert calling(part)(0.5) == 61.5
     assert sys.getrecursionlimit() == before
 
 
