@@ -24,6 +24,11 @@ from ..row_terms import row_terms
 from ..spec import Spec
 
 
+# Change of velocity that is none [m/s]. Sweeps that shrink an impulse would go on to the least of
+# all numbers, which is more impulse the smaller the unit of mass: none is lost so far above it.
+NOTHING = 1e-150
+
+
 class Carry(NamedTuple):
     """What a method carries from sweep to sweep; those that carry more have a tuple of their own.
 
@@ -86,7 +91,7 @@ def make_solve(spec: Spec, name: str, iteration: Iteration) -> Any:
         while sweeps < params.sweeps and not ends:
             greatest, carry = sweep(system, workspace, params, counters, carry)
             sweeps += 1
-            over = greatest == 0.0 or greatest != greatest
+            over = greatest <= NOTHING or greatest != greatest
             evaluates = over or greatest <= carry.aim
             if stops_early:
                 evaluates = evaluates or record_residuals or sweeps % every == 0
