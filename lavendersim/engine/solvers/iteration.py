@@ -23,9 +23,8 @@ from ..residual import make_residual
 from ..row_terms import row_terms
 from ..spec import Spec
 
-
 # Change of velocity that is none [m/s]. Sweeps that shrink an impulse would go on to the least of
-# all numbers, which is more impulse the smaller the unit of mass: none is lost so far above it.
+# all numbers, which is another impulse in another unit of mass.
 NOTHING = 1e-150
 
 
