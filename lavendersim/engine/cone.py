@@ -7,8 +7,11 @@ from __future__ import annotations
 
 from math import sqrt
 
-from .compile import inner
+from .compile import inner, kernel
 from .spec import Spec
+
+# By how much a length is beyond another that it was made as long as [-].
+ROUND_OFF = 1e-13
 
 
 @inner
@@ -51,6 +54,30 @@ def project_disc(one, two, limit):
 def project_square(one, two, limit):
     """Return the nearest point of the square of half width `limit` to (one, two)."""
     return min(max(one, -limit), limit), min(max(two, -limit), limit)
+
+
+def make_are_within(spec: Spec):
+    """Return `kernel(contacts, count)`: whether impulses lie within their cones, but for rounding.
+
+    Of rows without friction, of which mu is 0, nothing is said.
+    """
+    square = spec.friction_cone == "pyramid"
+
+    def are_within(contacts, count):
+        for c in range(count):
+            contact = contacts[c]
+            one, two = contact.lambda_1, contact.lambda_2
+            most = (1.0 + ROUND_OFF) * contact.mu * contact.lambda_n
+            if contact.mu == 0.0:
+                continue
+            if square:
+                if abs(one) > most or abs(two) > most:
+                    return False
+            elif one * one + two * two > most * most:
+                return False
+        return True
+
+    return kernel(are_within, spec)
 
 
 def make_project_section(spec: Spec):

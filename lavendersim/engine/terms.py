@@ -27,6 +27,7 @@ class RowTerms:
     stopped: bool = False  # some of a normal are stops of joints: `stop` is 1
     coupled: bool = False  # an impulse p turns about n by e . p beside its lever: `patch` [m]
     stretched: bool = False  # tangents of other lengths than 1, whose squares' inverses are `ease`
+    varied: bool = False  # mu is another in each step: impulses that are kept may lie outside
     shifted: bool = False  # surface_1, surface_2 add to the slip [m/s]
     taut: bool = False  # some of a normal are ropes: `span` is above 0 [m]
     elastic: bool = False  # some push as springs, `spring_compliance`, never at an instant

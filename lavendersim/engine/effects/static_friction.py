@@ -25,6 +25,7 @@ from lavendersim.quantities.quantity import Quantity
 
 from ..spec import Spec
 from ..step_terms import step_terms
+from ..terms import RowTerms
 from .decision import Decision, Facts, PairFacts, by_pair
 from .effect import Balance, Effect, Fields, Hooks, Kernel, kernel
 from .keys import COEFFICIENT, SurfaceKey, geometric_mean, larger
@@ -273,6 +274,7 @@ EFFECT = Effect(
         ],
         pair=[("static_friction", "f8"), ("stribeck_velocity", "f8")],  # [-], [m/s]
     ),
+    row=RowTerms(varied=True),
     balance=Balance(varies_friction="static_friction"),
     hooks=Hooks(
         start_step=make_start_step,

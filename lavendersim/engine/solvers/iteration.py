@@ -7,7 +7,9 @@
 A solver is an `Iteration`, what is its own of these; measuring, stopping, counting and recording
 stand here for all of them. The residual costs about a sweep, so it is measured only where the
 changes of a sweep, or so many sweeps, say that it may be small enough. A sweep that changes nothing
-is the last one: those left would change nothing either. So is one that ends in a NaN.
+is the last one: those left would change nothing either. So is one that ends in a NaN. Where cones
+change from step to step, impulses that are kept may lie outside by less than the residual shows at
+its aim: a sweep, which ends within them, is made all the same.
 """
 
 from __future__ import annotations
@@ -15,9 +17,15 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..compile import kernel
+from ..cone import make_are_within
 from ..effects import made_once
 from ..residual import make_residual
+from ..row_terms import row_terms
 from ..spec import Spec
+
+# Change of velocity that is none [m/s]. Sweeps that shrink an impulse would go on to the least of
+# all numbers, which is another impulse in another unit of mass.
+NOTHING = 1e-150
 
 
 class Carry(NamedTuple):
@@ -62,6 +70,8 @@ def make_solve(spec: Spec, name: str, iteration: Iteration) -> Any:
     sweep, proceed, finish = iteration.sweep, iteration.proceed, iteration.finish
     proceeds, finishes = proceed is not None, finish is not None
     every, stops_early = iteration.residual_every, iteration.residual_every > 0
+    varied = stops_early and (row_terms(spec).varied or row_terms(spec).stretched)
+    are_within: Any = make_are_within(spec) if varied else None
 
     def solve(system, workspace, params, counters, residual_rows):
         contacts, count, velocities = system.contacts, system.count, system.velocities
@@ -75,10 +85,12 @@ def make_solve(spec: Spec, name: str, iteration: Iteration) -> Any:
         sweeps, ends = 0, False
         if stops_early:
             ends = largest <= carry.aim or largest != largest
+            if varied:
+                ends = ends and are_within(contacts, count)
         while sweeps < params.sweeps and not ends:
             greatest, carry = sweep(system, workspace, params, counters, carry)
             sweeps += 1
-            over = greatest == 0.0 or greatest != greatest
+            over = greatest <= NOTHING or greatest != greatest
             evaluates = over or greatest <= carry.aim
             if stops_early:
                 evaluates = evaluates or record_residuals or sweeps % every == 0

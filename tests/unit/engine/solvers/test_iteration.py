@@ -106,6 +106,15 @@ def test_a_sweep_that_changes_nothing_or_ends_in_a_nan_is_the_last(said: float) 
     assert (ended.sweeps, ended.residual, ended.not_converged) == (1, 0.5, 1)
 
 
+def test_what_counts_as_no_change_is_a_speed_and_no_impulse() -> None:
+    """An impulse that sweeps shrink for ever ends at as many of them in any unit of mass.
+
+    Of 1e-9 kg the least of all numbers, 5e-324 N s, is 5e-315 m/s, of 256 times that another.
+    """
+    for said, sweeps in ((5e-315, 1), (5e-315 / 256, 1), (1e-149, SWEEPS)):
+        assert solve(-1.0, lambda spec, said=said: Iteration(halving(spec, said))).sweeps == sweeps
+
+
 def test_a_method_that_says_nothing_of_its_changes_goes_on() -> None:
     assert solve(0.1, lambda spec: Iteration(halving(spec, inf))).sweeps == SWEEPS
 
