@@ -11,9 +11,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.cell import Cavity, Plane
+from lavendersim.cell import Plane
 from lavendersim.figures.style import LOOKS
-from lavendersim.figures.thumbnail import FIXED, corners_of, grounds_of, view_of
+from lavendersim.figures.thumbnail import colour_of, corners_of, grounds_of, view_of
 from lavendersim.measures.changes import removals
 
 FRAMES: Final = 120  # states at most
@@ -25,14 +25,13 @@ def motion(trace: Any) -> str:
     """Return the sampled motion of a log as JSON; "" where fewer than two states are whole.
 
     `t`: times [s]; `right`, `up`: directions of the first view; `grounds`: [point, direction] of
-    planes seen edge on; `bodies`: colour `c`, corners `v` in the body's frame [m], whether `fixed`,
-    and poses `p` [x, y, z, qw, qx, qy, qz], one a time, null where it is not there.
+    planes seen edge on; `bodies`: colour `c` ("none" of a cavity), corners `v` in the body's frame
+    [m], whether `fixed`, and poses `p` [x, y, z, qw, qx, qy, qz], one a time, null where it is not
+    there.
     """
     rows, poses = trace.recorded_pose
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
-    solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane | Cavity)][
-        :MOST_BODIES
-    ]
+    solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane)][:MOST_BODIES]
     whole = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))
     if len(whole) < 2 or not solid:
         return ""
@@ -48,7 +47,7 @@ def motion(trace: Any) -> str:
         last = gone.get(trace.bodies[i])
         drawn.append(
             {
-                "c": FIXED if body.fixed else LOOKS[i % len(LOOKS)].colour,
+                "c": colour_of(body.shape) if body.fixed else LOOKS[i % len(LOOKS)].colour,
                 "v": _rounded(corners_of(body.shape), digits),
                 "fixed": body.fixed,
                 "p": [

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.cell import Cavity, CellShape, Convex, Ellipsoid, Plane
+from lavendersim.cell import Bowl, Cavity, CellShape, Convex, Ellipsoid, Plane
 from lavendersim.figures.style import DARK, GREY, LOOKS
 from lavendersim.geometry.rotations import rotation_matrices, rotation_matrix
 from lavendersim.geometry.shapes import half_space, pieces
@@ -22,6 +22,8 @@ from lavendersim.measures.changes import removals
 WIDTH, HEIGHT, DPI = 1.6, 1.1, 100  # inch, inch, dots per inch: 160 x 110 dots
 MARGIN = 0.08  # of the picture, on every side
 BEFORE, FIXED = "#e8e8e8", "#bbbbbb"  # where bodies began; what never moves
+AROUND = "none"  # a cavity, which is around the bodies
+AROUND_IT: Final = 48  # corners of its circles
 NOTHING: Final = np.array([[-1.0, 0.0], [1.0, 1.0]])  # a picture without bodies
 MOST_BODIES = 3000  # of a larger scene the first ones; more are less than a dot each
 
@@ -88,9 +90,7 @@ def _outlines(
     rows, poses = trace.recorded_pose
     whole = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
-    solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane | Cavity)][
-        :MOST_BODIES
-    ]
+    solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane)][:MOST_BODIES]
     movable = {i for i in solid if not bodies[i].fixed}
     outlines: list[np.ndarray] = []
     colours: list[str] = []
@@ -107,12 +107,20 @@ def _outlines(
                 corners = pose[i, :3] + corners_of(bodies[i].shape) @ turns[i].T
                 outlines.append(_hull(np.column_stack([corners @ right, corners @ up])))
                 own = LOOKS[i % len(LOOKS)].colour if is_end else BEFORE
-                colours.append(own if i in movable else FIXED)
+                colours.append(own if i in movable else colour_of(bodies[i].shape))
     return outlines, colours, np.concatenate(_seen(outlines, colours) or [NOTHING])
 
 
+def colour_of(shape: CellShape) -> str:
+    """Return the colour of a body that nothing moves."""
+    return AROUND if isinstance(shape, Cavity) else FIXED
+
+
 def _seen(outlines: list[np.ndarray], colours: list[str]) -> list[np.ndarray]:
-    """Return what must lie in the picture: all that can move, where it began and where it ended."""
+    """Return what must lie in the picture: all that can move, where it began and where it ended.
+
+    And what is around it.
+    """
     return [one for one, colour in zip(outlines, colours, strict=True) if colour != FIXED]
 
 
@@ -134,12 +142,30 @@ def grounds_of(
 
 @lru_cache(maxsize=256)
 def corners_of(shape: CellShape) -> np.ndarray:
-    """Return points (n, 3) in the body's frame [m] whose convex hull is the shape, or nearly."""
+    """Return points (n, 3) in the body's frame [m] whose convex hull is the shape, or nearly.
+
+    Of a cavity what it is around, of a drum as much as it is wide.
+    """
+    if isinstance(shape, Cavity):
+        return _inside(shape)
     placed = [
         piece.position + _round_or_not(piece.shape) @ rotation_matrix(piece.orientation).T
         for piece in pieces(shape)
     ]
     return np.concatenate(placed)
+
+
+def _inside(cavity: Cavity) -> np.ndarray:
+    """Return points (n, 3) of circles so fine that what lies at the wall does not cross it [m]."""
+    turn = np.linspace(0.0, 2.0 * np.pi, AROUND_IT, endpoint=False)
+    circle = np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])
+    up = np.array([0.0, 0.0, 1.0])
+    if isinstance(cavity, Bowl):
+        tilts = np.linspace(-0.5 * np.pi, 0.5 * np.pi, AROUND_IT // 2 + 1)
+        circles = [np.cos(tilt) * circle + np.sin(tilt) * up for tilt in tilts]
+    else:
+        circles = [circle - up, circle + up]
+    return np.concatenate(circles) * cavity.radius
 
 
 def _round_or_not(shape: Convex) -> np.ndarray:

@@ -40,6 +40,7 @@ EVERYTHING = Spec(
     tolerance=True,
 )
 
+WALLS = ("plane", "bowl", "drum")  # what never has a mass
 SOLID: TypeAdapter[Any] = TypeAdapter(Annotated[Solid, Field(discriminator="kind")])
 
 
@@ -48,10 +49,11 @@ def body(shape: dict[str, Any], position=(0.0, 0.0, 0.0), **properties: Any) -> 
     surface = {key.name: properties.pop(key.name, key.default) for key in SURFACE_KEYS}
     by_effect = {key.name: properties.pop(key.name) for key in BODY_KEYS if key.name in properties}
     moves = any(by_effect.get(key.name) for key in MOTION_KEYS)
-    fixed = properties.pop("fixed", moves or shape["kind"] == "plane")
+    wall = shape["kind"] in WALLS
+    fixed = properties.pop("fixed", moves or wall)
     mass = None if fixed else properties.pop("mass", 1.0)
     inertia = None
-    if shape["kind"] != "plane":
+    if not wall:
         solid = resolve_shape(SOLID.validate_json(json.dumps(shape), strict=False))
         shape = solid.shape.model_dump(mode="json")
         inertia = None if fixed else [mass * moment for moment in solid.inertia_per_mass]

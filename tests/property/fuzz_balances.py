@@ -26,6 +26,7 @@ import numpy as np
 from lavendersim.cell import CellConfig
 from lavendersim.engine.effects.joint_models import Joint
 from lavendersim.engine.engine import Engine, Rows
+from lavendersim.engine.impact_rows import FLUSH
 from lavendersim.engine.records import PLANE, TOUCHING
 from lavendersim.scene.build import Scene
 
@@ -37,6 +38,7 @@ ROUND_OFF = 1e-9
 TAKEN_BACK = 64.0 * np.finfo(float).eps
 # Of separations: faces and rims are found to some 1e-6 of the sizes (`separation.ascend`).
 NEAR = 1e-5
+END = 4.0  # times as fast as its centre is the end of a rod that is pushed there: 1 + m l^2/I
 MOVED = ("teleport", "orientation", "remove")
 
 
@@ -152,7 +154,7 @@ def unbalanced(
     if is_calm(config):
         found, judged = found + _energy(config, rows, steps), [*judged, "energy"]
     if not is_anew(config, steps):
-        found, judged = found + _penetration(rows, steps), [*judged, "penetration"]
+        found, judged = found + _penetration(config, rows, steps), [*judged, "penetration"]
     return found, judged
 
 
@@ -291,9 +293,22 @@ def _energy(config: CellConfig, rows: Rows, steps: Steps) -> list[str]:
     return [f"energy: gained {said}; {kinetic[k]:.3g} J before"]
 
 
-def _pair_reach(steps: Steps) -> np.ndarray:
-    """Return by how much two bodies may come nearer in each step [m]."""
-    reach: np.ndarray = np.sort(steps.reach, axis=1)[:, -2:].sum(axis=1)
+def _pair_reach(rows: Rows, steps: Steps) -> np.ndarray:
+    """Return by how much two bodies may come nearer in each step [m].
+
+    In one of several parts what is pushed may be thrown back before it ends.
+    """
+    mass, contact, own = steps.before.mass, steps.contact, steps.reach
+    if "parts" in (rows.step.dtype.names or ()):
+        thrown = np.zeros(mass.shape)
+        size = np.linalg.norm(_impulses(contact), axis=1)
+        for column in ("body_a", "body_b"):
+            np.add.at(thrown, (steps.at, contact[column]), size)
+        thrown[rows.step["parts"][1 : len(mass) + 1] < 2] = 0.0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            way = np.where(mass > 0.0, END * thrown / mass * steps.before.dt[:, None], 0.0)
+        own = own + way
+    reach: np.ndarray = np.sort(own, axis=1)[:, -2:].sum(axis=1)
     return reach
 
 
@@ -363,8 +378,10 @@ def is_anew(config: CellConfig, steps: Steps) -> bool:
     return moved or bool(steps.before.asleep.any())
 
 
-def _penetration(rows: Rows, steps: Steps) -> list[str]:
-    count, reach = len(steps.before.dt), _pair_reach(steps)
+def _penetration(config: CellConfig, rows: Rows, steps: Steps) -> list[str]:
+    """What was passed over as flush, which is no contact, is as deep as that at most."""
+    count, reach = len(steps.before.dt), _pair_reach(rows, steps)
+    flush = FLUSH * config.numerics.slop + TOUCHING
     deepest = rows.step["max_penetration"][1 : count + 1]
     if "joint" in (steps.contact.dtype.names or ()):
         stops, others = np.zeros(count), np.zeros(count)
@@ -373,7 +390,7 @@ def _penetration(rows: Rows, steps: Steps) -> list[str]:
             np.maximum.at(depth, steps.at[own], steps.contact["penetration"][own])
         deepest = np.where(deepest > stops, deepest, others)
     allowed = np.full(count, np.inf)  # of what overlaps as it begins nothing is said
-    allowed[1:] = np.maximum(deepest[:-1], 0.0) + reach[1:] + reach[:-1]
+    allowed[1:] = np.maximum(deepest[:-1], flush) + reach[1:] + reach[:-1]
     allowed += NEAR * steps.before.bound.max(axis=1)
     wrong = deepest > allowed
     if not wrong.any():

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import yaml
+from fuzz_cavities import cavity
 from fuzz_draws import Draw
 from fuzz_drives import events, forces, motion, paired, springs
 from fuzz_joints import connections
@@ -172,6 +173,12 @@ class _Pen(Draw):
         self.wide = 3.0 if self.integer(0, 3) == 0 else 1.0  # decades of masses, times that
         self.calm = self.integer(0, 3) == 3  # nothing but weight gives energy
 
+    def beside(self, seed: str) -> _Pen:
+        """Return a pen for the same scene that takes none of this one's draws."""
+        pen = _Pen(seed, self.plan)
+        pen.wide, pen.calm, pen.duration = self.wide, self.calm, self.duration
+        return pen
+
     def has(self, effect: str) -> bool:
         """Whether the plan has an effect, and this time it is required."""
         if effect not in self.plan.effects or (self.calm and effect in GIVING):
@@ -317,6 +324,7 @@ def config_of(seed: str, plan: Drawn) -> dict[str, Any]:
     if pen.coin():
         shape = {"kind": "plane", "offset": -pen.power(-2.0, 1.0)}
         bodies["floor"] = {"shape": shape, "surface": pen.surface(1.0)}
+    cavity(pen.beside(f"{seed} cavity"), bodies, sizes)
     grain(pen, bodies)
     movable = [name for name, body in bodies.items() if "mass" in body]
     scene: dict[str, Any] = {

@@ -86,6 +86,20 @@ def test_every_effect_is_drawn_or_said_not_to_be() -> None:
     assert {*FORCED} <= {*FULL.effects}
 
 
+def test_a_cavity_changes_no_draw_of_the_bodies_inside(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So a scene without one is what it was before there were any."""
+    trees = [drawn(FULL, "full", 0, number)["scene"]["bodies"] for number in range(40)]
+    monkeypatch.setattr("fuzz_scenes.cavity", lambda *_: None)
+    plain = [drawn(FULL, "full", 0, number)["scene"]["bodies"] for number in range(40)]
+    assert any("cavity" in bodies for bodies in trees)
+    for bodies, alone in zip(trees, plain, strict=True):
+        if "cavity" not in bodies:
+            assert bodies == alone
+        else:
+            shapes = {name: body["shape"] for name, body in bodies.items() if name != "cavity"}
+            assert shapes == {name: body["shape"] for name, body in alone.items()}
+
+
 def test_a_run_is_drawn_from_its_number_alone() -> None:
     first = [drawn(FULL, "full", 3, number) for number in range(5)]
     assert [drawn(FULL, "full", 3, number) for number in (4, 3)] == [first[4], first[3]]
@@ -245,6 +259,11 @@ def test_scenes_have_all_that_drives_them() -> None:
     surfaces = [body["surface"] for body in bodies if isinstance(body["surface"], dict)]
     keys = {key for surface in surfaces for key in surface}
     assert keys >= {"static_friction", "cohesion", "yield_speed", "damping_ratio", "compliance"}
+    around = [scene["bodies"]["cavity"] for scene in scenes if "cavity" in scene["bodies"]]
+    assert 40 < len(around) < 100  # one of six
+    assert {body["shape"]["kind"] for body in around} == {"bowl", "drum"}
+    assert any("motion" in body for body in around)
+    assert any(body.get("angular_velocity") for body in around)
     masses = [body["mass"] for body in bodies if "mass" in body]
     assert max(masses) / min(masses) > 1e9
 

@@ -10,6 +10,7 @@ import pytest
 from fuzz_balances import TAKEN_BACK, State, Steps, _gap, _momentum, _penetration
 
 DT, MASS = 0.01, 2.0
+STILL = {"step": 2, "body_a": 0, "body_b": 1, "impulse_n": 0.0}
 
 
 def steps_of(contacts: list[dict[str, float]], count: int = 2, v: Any = 0.0) -> Steps:
@@ -30,8 +31,15 @@ def steps_of(contacts: list[dict[str, float]], count: int = 2, v: Any = 0.0) -> 
     return Steps(still, still._replace(velocity=velocity[1:]), rows, rows["step"] - 1, zeros)
 
 
-def cell_of(cone: str = "disc", warm_start: bool = False) -> Any:
-    numerics = SimpleNamespace(friction_cone=cone, warm_start=warm_start)
+def logged(first: float, second: float, parts: int = 1) -> Any:
+    """Return what two steps log of their depths [m]."""
+    step = np.zeros(3, [("max_penetration", "f8"), ("parts", "i8")])
+    step["max_penetration"], step["parts"] = (0.0, first, second), parts
+    return SimpleNamespace(step=step)
+
+
+def cell_of(cone: str = "disc", warm_start: bool = False, slop: float = 0.0) -> Any:
+    numerics = SimpleNamespace(friction_cone=cone, warm_start=warm_start, slop=slop)
     free = SimpleNamespace(drag=None)
     scene = SimpleNamespace(bodies={"floor": free, "ball": free}, forces=[], springs=[])
     return SimpleNamespace(numerics=numerics, scene=scene)
@@ -40,9 +48,22 @@ def cell_of(cone: str = "disc", warm_start: bool = False) -> Any:
 @pytest.mark.parametrize("joint", [0, 1])
 def test_a_stop_that_its_joint_tears_past_is_no_overlap(joint: int) -> None:
     """Its depth is an arm, as long as the axis is far, times the turn that is missing."""
-    steps = steps_of([{"step": 2, "joint": joint, "penetration": 5.0}])
-    rows: Any = SimpleNamespace(step={"max_penetration": np.array([0.0, 0.0, 5.0])})
-    assert bool(_penetration(rows, steps)) == (joint == 0)
+    steps = steps_of([STILL | {"joint": joint, "penetration": 5.0}])
+    assert bool(_penetration(cell_of(), logged(0.0, 5.0), steps)) == (joint == 0)
+
+
+def test_what_is_passed_over_as_flush_is_as_deep_as_ten_slops_when_it_is_met() -> None:
+    steps = steps_of([STILL | {"penetration": 0.1}])
+    for deep, seen in ((0.0999, False), (0.1001, True)):
+        assert bool(_penetration(cell_of(slop=0.01), logged(0.0, deep), steps)) == seen
+
+
+def test_what_is_thrown_back_within_a_step_has_been_farther_than_its_ends_say() -> None:
+    """1 kg m/s in a part of many carries the end of a rod of that mass by 4 m/s dt at most."""
+    row = {"step": 1, "body_a": 0, "body_b": 1, "nz": 1.0, "impulse_n": MASS, "penetration": 0.0}
+    steps = steps_of([row])
+    for parts, deep, seen in ((1, 0.1 * DT, True), (2, 3.9 * DT, False), (2, 4.1 * DT, True)):
+        assert bool(_penetration(cell_of(), logged(0.0, deep, parts), steps)) == seen
 
 
 @pytest.mark.parametrize("cone", ["disc", "convex"])

@@ -128,6 +128,22 @@ def test_a_world_on_a_floor_moves_alike_turned_about_gravity(kinds, most, known,
     check_turned(bodies, quaternion, GRAVITY, known)
 
 
+@EITHER
+@given(st.data())
+@SOME
+def test_a_world_in_a_cavity_moves_alike_however_it_is_turned(kinds, most, known, data):
+    """Nothing draws the axis of a drum and its normals but where it stands."""
+    bodies = data.draw(zoos(kinds, (2, most), cavity=True))
+    check_turned(bodies, np.array([1.0, *data.draw(vector)]), NOWHERE, known)
+
+
+@EITHER
+@given(st.data())
+@SOME
+def test_a_world_in_a_cavity_moves_in_a_mirror_as_its_image(kinds, most, known, data):
+    check_mirrored(data.draw(zoos(kinds, (2, most), cavity=True)), GRAVITY, known)
+
+
 def check_turned(bodies, quaternion, gravity, known):
     quaternion = quaternion / np.linalg.norm(quaternion)
     matrix = convex.matrix_of(quaternion)
@@ -225,7 +241,10 @@ def mirrored(bodies: dict[str, Any]) -> dict[str, Any]:
 def test_a_world_in_a_mirror_moves_as_its_image(kinds, most, known, floor, data):
     """No turn of the world shows a cross product of the wrong hand; a mirror does."""
     bodies = data.draw(zoos(kinds, (2, most), floor=floor))
-    gravity = GRAVITY if floor else NOWHERE
+    check_mirrored(bodies, GRAVITY if floor else NOWHERE, known)
+
+
+def check_mirrored(bodies, gravity, known):
     plain, image = motion(bodies, gravity), motion(mirrored(bodies), gravity)
     np.testing.assert_allclose(image[:, :3], MIRROR * plain[:, :3], atol=known)
     np.testing.assert_allclose(image[:, 3:], TURNED * plain[:, 3:], atol=known / 0.1)
@@ -301,6 +320,16 @@ def test_masses_in_other_units_change_no_bit_of_the_motion(kinds, most, known, f
     exponent = data.draw(st.integers(-20, 20))
     seen = motion_in_units(bodies, gravity, (2.0**exponent, 1.0, 1.0))
     np.testing.assert_array_equal(seen, motion(bodies, gravity))
+
+
+@EITHER
+@given(st.data())
+@SOME
+def test_masses_in_other_units_change_no_bit_inside_a_cavity(kinds, most, known, data):
+    bodies = data.draw(zoos(kinds, (2, most), cavity=True))
+    exponent = data.draw(st.integers(-20, 20))
+    seen = motion_in_units(bodies, GRAVITY, (2.0**exponent, 1.0, 1.0))
+    np.testing.assert_array_equal(seen, motion(bodies, GRAVITY))
 
 
 @EITHER

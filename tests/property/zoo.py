@@ -74,6 +74,9 @@ HULL = ((0.2, 0, -0.12), (-0.1, 0.17, -0.12), (-0.1, -0.17, -0.12), (0.02, 0.03,
 # Half a metre apart, so that bodies some 0.4 m wide that fly together meet within a few steps.
 CORNERS = 0.5 * np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0)], float)
 FLOOR = -0.3  # a few steps below most bodies at the origin [m]
+CAVITY = 0.9  # radius of what the corners are inside of [m]
+OUT = np.array([0.6, 0.48, 0.64])  # from its wall, over the origin, to its centre
+ACROSS = np.array([0.52, 0.36, 0.8, 0.0]) / np.sqrt(1.04)  # turns the axis of a drum across that
 
 
 def shape(kind: str, size: float) -> dict[str, Any]:
@@ -104,9 +107,16 @@ def zoos(
     friction: Any = share,
     compliance: Any = rigid,
     floor: bool = False,
+    cavity: bool = False,
 ) -> dict[str, Any]:
-    """Bodies that fly and tumble towards the origin, masses over two decades."""
+    """Bodies that fly and tumble towards the origin, masses over two decades.
+
+    cavity: and beyond it, to the wall of a bowl or a drum that is as far as a floor.
+    """
     bodies: dict[str, Any] = {}
+    down = np.array([0.0, 0.0, 2.0 * floor])
+    if cavity:
+        down = 4.0 * OUT
     for i in range(draw(st.integers(*count))):
         quaternion = np.array([1.0, *draw(vector)])
         bodies[f"body_{i}"] = body(
@@ -114,7 +124,7 @@ def zoos(
             CORNERS[i] + 0.04 * np.array(draw(vector)),
             orientation=quaternion / np.linalg.norm(quaternion),
             mass=10.0 ** draw(unit),
-            velocity=-8.0 * CORNERS[i] + np.array(draw(vector)) - [0.0, 0.0, 2.0 * floor],
+            velocity=-8.0 * CORNERS[i] + np.array(draw(vector)) - down,
             angular_velocity=6.0 * np.array(draw(vector)),
             restitution=draw(restitution),
             friction=draw(friction),
@@ -122,6 +132,9 @@ def zoos(
         )
     if floor:  # last: a body's row is its place in the order, whatever the floor
         bodies["floor"] = plane(offset=FLOOR, friction=1.0)
+    if cavity:
+        wall = {"kind": draw(st.sampled_from(("bowl", "drum"))), "radius": CAVITY}
+        bodies["cavity"] = body(wall, (CAVITY + FLOOR) * OUT, orientation=ACROSS, friction=1.0)
     return bodies
 
 

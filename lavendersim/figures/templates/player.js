@@ -31,12 +31,12 @@ function axesOf(data, turn, tilt) {
   const right = mix(data.right, away, turn), flat = mix(away, data.right, -turn);
   return { right, up: mix(data.up, flat, tilt), away: mix(flat, data.up, -tilt) };
 }
-// What of the motion must be seen: all that can move, in every frame.
+// What of the motion must be seen: all that can move, in every frame, and a cavity around it.
 function roomOf(data) {
   let low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   for (const body of data.bodies) {
     const size = Math.max(...body.v.map((v) => Math.hypot(...v)));
-    for (const pose of body.fixed ? [] : body.p) {
+    for (const pose of body.fixed && body.c !== "none" ? [] : body.p) {
       if (!pose) continue;
       low = low.map((x, k) => Math.min(x, pose[k] - size));
       high = high.map((x, k) => Math.max(x, pose[k] + size));
@@ -85,8 +85,10 @@ function player(box) {
     for (const one of outlines(data, frame, axes)) {
       path(one.points);
       context.closePath();
-      context.fillStyle = one.colour;
-      context.fill();
+      if (one.colour !== "none") {
+        context.fillStyle = one.colour;
+        context.fill();
+      }
       context.stroke();
     }
     slider.value = String(frame);

@@ -23,10 +23,12 @@ from lavendersim.engine.record_layout import template_dtype
 from lavendersim.engine.records import (
     ANGULAR_VELOCITY,
     BODY,
+    BOWL,
     BOX,
     CAPSULE,
     COMPOUND,
     CYLINDER,
+    DRUM,
     ORIENTED_BODY,
     PAIR,
     PARAMETERS,
@@ -39,9 +41,10 @@ from lavendersim.engine.records import (
 from lavendersim.engine.spec import Spec
 
 SHAPES = ("box_plane", "capsule_plane", "cylinder_plane", "sphere_plane")
+WITH_CAVITIES = ("box_drum", *SHAPES, "sphere_bowl")
 SURFACE = [("friction", "f8"), ("restitution", "f8")]
-# Classes of bodies: one per shape, and bodies that touch nothing.
-MATERIALS = {PLANE: 0, COMPOUND: 0, SPHERE: 1, BOX: 2, CAPSULE: 3, CYLINDER: 4}
+# Classes of bodies: one per shape, of all walls one, and bodies that touch nothing.
+MATERIALS = {PLANE: 0, COMPOUND: 0, BOWL: 0, DRUM: 0, SPHERE: 1, BOX: 2, CAPSULE: 3, CYLINDER: 4}
 GHOST = 5
 CLASSES = 6
 BODY_RECORD = dtype(BODY, ORIENTED_BODY, BY_NAME["broad_phase"].fields.body, [("owner", "i8")])
@@ -49,9 +52,9 @@ _TEXT = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()[:8]
 
 
 @cache
-def broad_phase_kernel(*effects: str) -> Any:
+def broad_phase_kernel(*effects: str, pairs: tuple[str, ...] = SHAPES) -> Any:
     """Return the kernel for the shapes above, kept on disk."""
-    spec = Spec(tuple(sorted(("broad_phase", "rotation", *effects))), SHAPES, f"pairs {_TEXT}")
+    spec = Spec(tuple(sorted(("broad_phase", "rotation", *effects))), pairs, f"pairs {_TEXT}")
 
     def compose(spec: Spec) -> Any:
         find = broad_phase.make(spec, SURFACE)
@@ -94,14 +97,20 @@ def half_extents(row: np.void) -> np.ndarray:
 class World:
     """Bodies in motion and the broad phase that follows them."""
 
-    def __init__(self, count: int, *effects: str, gravity: float = 9.81) -> None:
+    def __init__(
+        self,
+        count: int,
+        *effects: str,
+        gravity: float = 9.81,
+        pairs: tuple[str, ...] = SHAPES,
+    ) -> None:
         self.bodies = np.zeros(count, BODY_RECORD)
         self.velocities = np.zeros(count, dtype(VELOCITY, ANGULAR_VELOCITY))
         self.parameters = np.zeros(1, dtype(PARAMETERS))
         self.parameters["dt"], self.parameters["gz"] = 1.0 / 240.0, -gravity
         self.bodies["inv_m"] = 1.0
         self.bodies["owner"] = np.arange(count)
-        self.kernel = broad_phase_kernel(*effects)
+        self.kernel = broad_phase_kernel(*effects, pairs=pairs)
         self.templates = templates()
         self.failures = 0
         self.make_room(16)
@@ -176,6 +185,8 @@ class World:
             near[(j == plane) & low[i]] = True
             near[(i == plane) & ~low[j]] = False
             near[(j == plane) & ~low[i]] = False
+        for cavity in np.flatnonzero(np.isin(b["shape"], (BOWL, DRUM))):  # all are inside
+            near[(i == cavity) | (j == cavity)] = True
         still = b["inv_m"][b["owner"]] == 0.0
         near &= ~(still[i] & still[j]) & (b["owner"][i] != b["owner"][j])
         near &= (b["shape"][i] != COMPOUND) & (b["shape"][j] != COMPOUND)
@@ -183,10 +194,10 @@ class World:
         return set((i[near] * count + j[near]).tolist())
 
 
-def random_world(rng: np.random.Generator, *effects: str) -> World:
+def random_world(rng: np.random.Generator, *effects: str, pairs: tuple[str, ...] = SHAPES) -> World:
     """Some 150 bodies of all kinds, sizes over four decades, two planes, a tenth of them fixed."""
     count = int(rng.integers(2, 160))
-    world = World(count, *effects, gravity=float(rng.choice([0.0, 9.81])))
+    world = World(count, *effects, gravity=float(rng.choice([0.0, 9.81])), pairs=pairs)
     largest = 10.0 ** rng.uniform(-2.0, 2.0)
     spread = largest * 10.0 ** rng.uniform(-1.0, 0.5)
     for i in range(count):

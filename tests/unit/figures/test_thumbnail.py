@@ -11,6 +11,7 @@ from synthetic import log_of, scene_of
 
 from lavendersim.cell import Ellipsoid
 from lavendersim.figures.thumbnail import (
+    AROUND,
     BEFORE,
     FIXED,
     _hull,
@@ -108,6 +109,32 @@ def test_a_plane_is_a_line_where_it_is_seen_edge_on() -> None:
     assert (
         grounds_of(log({"wall": facing, "it": BALL}, [[0, 0, 0], [0, 0, 1]]), *view_of(one)) == []
     )
+
+
+def test_a_cavity_is_a_line_around_what_is_inside() -> None:
+    """Of 48 corners: as far out as 1 - (pi/48)^2/2 of the radius, 0.22 %."""
+    bowl = {"shape": {"kind": "bowl", "radius": 2.0}, "fixed": True}
+    turn = [0.5**0.5, 0.5**0.5, 0.0, 0.0]  # the drum's z to -y: away from the eye
+    drum = {"shape": {"kind": "drum", "radius": 2.0}, "orientation": turn, "fixed": True}
+    for wall in (bowl, drum):
+        one = log({"wall": wall, "it": BALL}, [[0, 0, 1], [1, 0, 1]], [[0, 0, 1], [0, 0, 1]])
+        one.recorded_pose.pose[:, 0, 3:] = wall.get("orientation", [1.0, 0.0, 0.0, 0.0])
+        outlines, colours, seen = _outlines(one, *view_of(one))
+        assert {BEFORE, AROUND} < {*colours}
+        assert len(colours) == 3
+        (around,) = (o for o, colour in zip(outlines, colours, strict=True) if colour == AROUND)
+        far = np.linalg.norm(around - [0.0, 1.0], axis=1)
+        np.testing.assert_allclose(far, 2.0, rtol=0.0, atol=1e-12)
+        assert len(around) >= 48
+        assert seen.min(axis=0) == pytest.approx([-2.0, -1.0], abs=0.01)
+
+
+def test_a_drum_from_the_side_is_as_long_as_wide() -> None:
+    drum = {"shape": {"kind": "drum", "radius": 2.0}, "fixed": True}
+    one = log({"wall": drum, "it": BALL}, [[0, 0, 1], [1, 0, 1]])
+    _, _, seen = _outlines(one, *view_of(one))
+    assert seen.min(axis=0) == pytest.approx([-2.0, -1.0])
+    assert seen.max(axis=0) == pytest.approx([2.0, 3.0])
 
 
 def test_equal_logs_give_equal_pictures() -> None:
