@@ -6,7 +6,6 @@ before it types them, so a pruned kernel is as small as one that never had the e
 
 from __future__ import annotations
 
-import sys
 import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -46,11 +45,6 @@ def inner(function: Callable[..., Any]) -> Any:
     return Kernel(with_signature(function), targetoptions=options)
 
 
-# Numba types a kernel within the kernel that calls it, each 23 frames of Python deeper: the engine
-# with every effect has kernels 42 deep.
-DEEPEST = 10_000
-
-
 @contextmanager
 def compiling() -> Iterator[None]:
     """Compile inside: without numba's remark that records share their first fields, and faster.
@@ -58,8 +52,6 @@ def compiling() -> Iterator[None]:
     A kernel compiled for one record serves records that begin with the same fields, at the same
     offsets; that is what we want, and numba calls it experimental each time.
     """
-    # For good: another thread may be compiling when this one ends.
-    sys.setrecursionlimit(max(sys.getrecursionlimit(), DEEPEST))
     with uncollected(), warnings.catch_warnings():
         warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
         yield

@@ -193,19 +193,3 @@ def test_kernels_of_several_effects_answer_together(numbers: tuple[float, ...]) 
         assert greatest([constant(n) for n in numbers], Spec())(2.0) == 2.0 * max(numbers)
         for bound in (-10.0, -1.5, 1.5, 10.0):
             assert either([above(n) for n in numbers], Spec())(bound) == (max(numbers) > bound)
-
-
-def test_kernels_call_each_other_deeper_than_python_goes_as_it_starts() -> None:
-    """With every effect they are 42 deep, of 23 frames of Python each."""
-
-    def above(called: Any) -> Any:
-        def plus_one(x):
-            return called(x) + 1.0
-
-        return kernel(plus_one, Spec())
-
-    deep = inner(lambda x: x)
-    for _ in range(60):
-        deep = above(deep)
-    with compiling():
-        assert deep(0.5) == 60.5
