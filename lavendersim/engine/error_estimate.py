@@ -20,9 +20,11 @@ from math import sqrt
 from typing import Any, Final
 
 from .block import make_relative_velocity
+from .collide.joint import direction, put_ends
+from .collide.records import put_normal
 from .compile import inner, kernel
-from .contact import make_apply_block, make_normal_velocity
-from .end_rows import make_stand_at_end
+from .contact import make_apply_block, make_complete_row, make_normal_velocity
+from .effects import made_once
 from .records import Field
 from .row_terms import row_terms
 from .spec import Spec
@@ -75,6 +77,44 @@ def make_point_speed(spec: Spec) -> Any:
         return speed
 
     return kernel(point_speed, spec)
+
+
+def make_stand_at_end(spec: Spec) -> Any:
+    """Return `kernel(state, count, velocities)`: rows of joints as their bodies stand.
+
+    At the end of a step the ends of a joint part by p of O(dt^2), which the next one turns round.
+    So a whole substep ends with -p, and its halves with p again: 2 p of their difference says
+    nothing of what is to come. It is along rows at the end; of rows at the middle a share in
+    proportion to dt is not, as is what a substep may be off by: none would be short enough.
+
+    velocities: what rows of contacts with friction turn, by the inertia that these have.
+    """
+    bounded, levers = row_terms(spec).bounded, row_terms(spec).levers
+    complete_row = make_complete_row(spec)
+    _, place_parts = made_once(spec, "place_parts")
+    carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
+
+    def stand_at_end(state, count, velocities):
+        bodies = state.bodies
+        place_parts(bodies)
+        if carries_inertia:
+            refresh_inertia(bodies, velocities)
+        for c in range(count):
+            contact = state.contacts[c]
+            if contact.bilateral == 1:
+                pair = state.pairs[contact.pair]
+                end_a, end_b = bodies[pair.a], bodies[pair.b]
+                a, b = bodies[contact.a], bodies[contact.b]
+                turns = False
+                if bounded:
+                    turns = contact.couple == 1
+                if not turns:
+                    put_normal(contact, direction(pair.kind, end_a))
+                if levers:
+                    put_ends(contact, pair.kind, end_a, end_b, a, b)
+                contact.k_n = complete_row(contact, a, b)
+
+    return kernel(stand_at_end, spec)
 
 
 def make_respect_contacts(spec: Spec) -> Any:
