@@ -10,7 +10,8 @@ no error of the timestep: below NOISE times their residual dv says nothing.
 
 At the end of a step a velocity violates its contacts by O(dt^2), because they hold at the middle;
 the next step begins with it and does not add to it. So dv is taken without the part that contacts
-would take away: with J (dv + M^-1 J^T p) = 0 of all rows that push, and of tangents that stick.
+would take away: with J (dv + M^-1 J^T p) = 0 of all rows that push or hold, and of tangents that
+stick. A motor that gives its most holds nothing.
 """
 
 from __future__ import annotations
@@ -19,8 +20,11 @@ from math import sqrt
 from typing import Any, Final
 
 from .block import make_relative_velocity
+from .collide.joint import direction, put_ends
+from .collide.records import put_normal
 from .compile import inner, kernel
-from .contact import make_apply_block, make_normal_velocity
+from .contact import make_apply_block, make_complete_row, make_normal_velocity
+from .effects import made_once
 from .records import Field
 from .row_terms import row_terms
 from .spec import Spec
@@ -31,9 +35,13 @@ from .vectors import Vec3, length, minus, position
 SHARE = 1.0 / 3.0
 # Velocities that two solves of one problem may differ by, in residuals; positions [m].
 NOISE, PLACE_NOISE = 4.0, 1e-10
-# Sweeps of the differences of velocities over contacts.
-SWEEPS = 20
-# A contact sticks whose friction is less than this share of the most it may be.
+# Sweeps of the differences of velocities over contacts, at most; and where there are joints, whose
+# rows are all but dependent, with each going beyond what it asks by so much (Young 1954).
+SWEEPS, JOINT_SWEEPS, BEYOND = 20, 3000, 1.5
+# What solves leave is along these rows, too, and may be far more than they part by: so much of
+# it is left [-].
+ENOUGH = 1e-3
+# A contact sticks, and a motor holds, by less than this share of the most it may be.
 STICKS = 0.999
 
 # What a body has done since the run began.
@@ -71,6 +79,44 @@ def make_point_speed(spec: Spec) -> Any:
     return kernel(point_speed, spec)
 
 
+def make_stand_at_end(spec: Spec) -> Any:
+    """Return `kernel(state, count, velocities)`: rows of joints as their bodies stand.
+
+    At the end of a step the ends of a joint part by p of O(dt^2), which the next one turns round.
+    So a whole substep ends with -p, and its halves with p again: 2 p of their difference says
+    nothing of what is to come. It is along rows at the end; of rows at the middle a share in
+    proportion to dt is not, as is what a substep may be off by: none would be short enough.
+
+    velocities: what rows of contacts with friction turn, by the inertia that these have.
+    """
+    bounded, levers = row_terms(spec).bounded, row_terms(spec).levers
+    complete_row = make_complete_row(spec)
+    _, place_parts = made_once(spec, "place_parts")
+    carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
+
+    def stand_at_end(state, count, velocities):
+        bodies = state.bodies
+        place_parts(bodies)
+        if carries_inertia:
+            refresh_inertia(bodies, velocities)
+        for c in range(count):
+            contact = state.contacts[c]
+            if contact.bilateral == 1:
+                pair = state.pairs[contact.pair]
+                end_a, end_b = bodies[pair.a], bodies[pair.b]
+                a, b = bodies[contact.a], bodies[contact.b]
+                turns = False
+                if bounded:
+                    turns = contact.couple == 1
+                if not turns:
+                    put_normal(contact, direction(pair.kind, end_a))
+                if levers:
+                    put_ends(contact, pair.kind, end_a, end_b, a, b)
+                contact.k_n = complete_row(contact, a, b)
+
+    return kernel(stand_at_end, spec)
+
+
 def make_respect_contacts(spec: Spec) -> Any:
     """Return `kernel(contacts, count, velocities, noise)`: of differences of velocities.
 
@@ -79,13 +125,21 @@ def make_respect_contacts(spec: Spec) -> Any:
     normal_velocity, apply_block = make_normal_velocity(spec), make_apply_block(spec)
     terms = row_terms(spec)
     friction, mixed = terms.frictional, terms.frictionless
-    compliant = terms.compliant
+    compliant, bilateral, bounded = terms.compliant, terms.bilateral, terms.bounded
     relative_velocity: Any = make_relative_velocity(spec)
+    most = JOINT_SWEEPS if bilateral else SWEEPS
+    beyond, enough = (BEYOND, ENOUGH) if bilateral else (1.0, 1.0)
 
     def acts(contact):
         pushes = contact.lambda_n > 0.0
         if compliant:
             pushes = pushes and contact.gamma == 0.0
+        if bilateral:
+            if contact.bilateral == 1:  # it holds, by an impulse of either sign
+                pushes = True
+                if bounded:
+                    if contact.motor == 1:  # and one that gives its most does not
+                        pushes = abs(contact.lambda_n) < STICKS * contact.most
         return pushes
 
     acts = kernel(acts, spec)
@@ -101,7 +155,7 @@ def make_respect_contacts(spec: Spec) -> Any:
         sticks = kernel(sticks, spec)
 
     def respect_contacts(contacts, count, velocities, noise):
-        for _ in range(SWEEPS):
+        for _ in range(most):
             largest = 0.0
             for c in range(count):
                 contact = contacts[c]
@@ -109,7 +163,7 @@ def make_respect_contacts(spec: Spec) -> Any:
                     va, vb = velocities[contact.a], velocities[contact.b]
                     v_n = normal_velocity(contact, va, vb)
                     largest = max(largest, abs(v_n))
-                    apply_block(contact, va, vb, -v_n / contact.k_n, 0.0, 0.0)
+                    apply_block(contact, va, vb, -beyond * v_n / contact.k_n, 0.0, 0.0)
                     if friction:
                         if sticks(contact):
                             x, y, z = relative_velocity(contact, va, vb)
@@ -119,7 +173,7 @@ def make_respect_contacts(spec: Spec) -> Any:
                             one = contact.i_11 * v_1 + contact.i_12 * v_2
                             two = contact.i_12 * v_1 + contact.i_22 * v_2
                             apply_block(contact, va, vb, 0.0, -one, -two)
-            if largest <= noise:
+            if largest <= enough * noise:
                 break
 
     return kernel(respect_contacts, spec)
@@ -155,6 +209,8 @@ def make_estimate(spec: Spec) -> Any:
     turns, touches = step_terms(spec).turns, spec.touches
     point_speed = make_point_speed(spec)
     respect_contacts: Any = make_respect_contacts(spec) if touches else None
+    joined = row_terms(spec).bilateral
+    stand_at_end: Any = make_stand_at_end(spec) if joined else None
 
     def subtract(v, dv):
         dv.vx, dv.vy, dv.vz = v.vx - dv.vx, v.vy - dv.vy, v.vz - dv.vz
@@ -170,6 +226,8 @@ def make_estimate(spec: Spec) -> Any:
         noise = NOISE * min(residual, params.tolerance)
         for i in range(bodies.shape[0]):
             subtract(velocities[i], differences[i])
+        if joined:
+            stand_at_end(state, count, differences)
         if touches:
             respect_contacts(state.contacts, count, differences, noise)
         largest, floor, worst = 0.0, 0.0, -1

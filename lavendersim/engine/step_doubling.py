@@ -19,6 +19,7 @@ from .effects import has_hook, made_by
 from .error_estimate import PATH, make_add_paths, make_estimate
 from .record_layout import cache_dtype, step_row_dtype
 from .records import COUNTERS, Field, dtype
+from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
 
@@ -72,6 +73,12 @@ class Control(NamedTuple):
     whole: np.ndarray  # (n,) bodies that the whole substep leads to
     differences: np.ndarray  # (n,) velocities that it leads to, then what they differ by
     cuts: np.ndarray  # (MOST_PARTS,) f8, ends of its parts, from the start of the step [s]
+    unparted: Any  # (n,) i8, as MOTION has it at the start of the substep; () without joints
+
+
+def keeps_unparted(spec: Spec) -> bool:
+    """Whether parts know from those before whether joints stayed together (`midpoint_rows`)."""
+    return row_terms(spec).bilateral and step_terms(spec).centred
 
 
 def allocate_control(spec: Spec, bodies: np.ndarray, velocities: np.ndarray, capacity: int) -> Any:
@@ -89,6 +96,7 @@ def allocate_control(spec: Spec, bodies: np.ndarray, velocities: np.ndarray, cap
         whole=np.zeros_like(bodies),
         differences=np.zeros_like(velocities),
         cuts=np.zeros(MOST_PARTS),
+        unparted=np.zeros(len(bodies), np.int64) if keeps_unparted(spec) else (),
     )
 
 
@@ -105,7 +113,7 @@ def make_begin_substep(spec: Spec) -> Any:
     rows: of steps, in the log.
     """
     warms, logs = has_hook(spec, "match"), has_hook(spec, "log_step")
-    driven = bool(made_by(spec, "drive"))
+    driven, joined = bool(made_by(spec, "drive")), keeps_unparted(spec)
     begin_of_part: Any = make_begin_of_part(spec) if driven else None
     next_knot: Any = make_next_knot(spec) if driven else None
 
@@ -117,6 +125,8 @@ def make_begin_substep(spec: Spec) -> Any:
         for i in range(state.bodies.shape[0]):
             control.bodies[i] = state.bodies[i]
             control.velocities[i] = state.velocities[i]
+            if joined:
+                control.unparted[i] = state.motion[i].unparted
         if warms:
             for c in range(counters.cached):
                 control.cache[c] = state.cache[c]
@@ -179,6 +189,7 @@ def make_restore(spec: Spec) -> Any:
     """Return `kernel(state, params, counter, rows)`: all as the substep began."""
     warms, logs = has_hook(spec, "match"), has_hook(spec, "log_step")
     sleeps, turns = has_hook(spec, "update_sleeping"), step_terms(spec).turns
+    joined = keeps_unparted(spec)
 
     def wake(kept, body):
         # Who woke in the substep is awake when it is made again.
@@ -202,6 +213,8 @@ def make_restore(spec: Spec) -> Any:
                 keep_awake(control.bodies[i], state.bodies[i])
             state.bodies[i] = control.bodies[i]
             state.velocities[i] = control.velocities[i]
+            if joined:
+                state.motion[i].unparted = control.unparted[i]
         counter[0] = control.counters[0]
         if warms:
             for c in range(counter[0].cached):

@@ -94,7 +94,7 @@ def free_along(kind, end):
 
 
 @inner
-def _direction(kind, end):
+def direction(kind, end):
     """Return the unit vector of the row of a pair of this kind; end: of A."""
     which = direction_of(kind)
     if which >= WITH_A:
@@ -172,7 +172,7 @@ def make_joint(spec: Spec):
         if stopped:
             if is_stop(kind):
                 return stop(kind, a, b, margin, scratch)
-        n = _direction(kind, a)
+        n = direction(kind, a)
         d = minus(position(b), position(a))
         put_manifold_normal(scratch.manifold, n)
         at = plus_scaled(position(a), 0.5, d)
