@@ -122,7 +122,7 @@ NESTED_CALLS = 5000
 
 @contextmanager
 def nested() -> Iterator[None]:
-    """Let calls nest as deep as parts of kernels do, while the compiler's lock is held."""
+    """Let calls nest as deep as parts of kernels do, under the lock of the compiler."""
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(max(before, NESTED_CALLS))
     try:

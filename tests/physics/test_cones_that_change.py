@@ -16,11 +16,11 @@ SLIDING = """
 question: Is friction within its cone?
 expected: It is.
 scene:
-  surfaces: {{rough: {{friction: 0.2, {surface}}}}}
+  surfaces: {{one: {{friction: 0.2, {surface}}}}}
   bodies:
-    floor: {{shape: {{kind: plane}}, surface: rough}}
+    floor: {{shape: {{kind: plane}}, surface: one}}
     ball: {{shape: {{kind: sphere, radius: 0.1}}, mass: 1, inertia: [1e6, 1e6, 1e6],
-      position: [0, 0, 0.1], velocity: [0.05, 0, 0], surface: rough{body}}}
+      position: [0, 0, 0.1], velocity: [0.05, 0, 0], surface: one{body}}}
   forces: [{{body: ball, force: [6, 0, 0]}}]
 numerics: {{timestep: 1/240, sweeps: 20, tolerance: 0.05, warm_start: true, {solver}}}
 duration: 0.1
