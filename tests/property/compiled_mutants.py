@@ -44,8 +44,15 @@ OF_FILES = {
     "effects/surface_velocity.py": ("tests/physics/test_moving_surfaces.py",),
     "effects/fast_bodies.py": ("tests/physics/test_fast_misses.py",),
     "effects/error_control.py": ("tests/physics/test_error_control.py",),
-    "step_doubling.py": ("tests/physics/test_error_control.py",),
-    "error_estimate.py": ("tests/physics/test_error_control.py",),
+    "step_doubling.py": (
+        "tests/physics/test_error_control.py",
+        "tests/physics/test_accuracy_over_phases.py",
+        "tests/physics/test_accuracy_of_joints.py",
+    ),
+    "error_estimate.py": (
+        "tests/physics/test_error_control.py",
+        "tests/physics/test_accuracy_of_joints.py",
+    ),
     "drives.py": ("tests/physics/test_functions_of_time.py",),
     "spring_midpoint.py": ("tests/physics/test_springs_at_the_middle.py",),
     "midpoint_*": ("tests/physics/test_contact_at_second_order.py",),
