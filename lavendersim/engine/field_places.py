@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from typing import Any, Final
 
 from llvmlite.ir import Constant, GlobalVariable, IntType
@@ -40,18 +41,10 @@ _NAMES = {name: tuple(field for field, _ in fields) for name, fields in COMPOSED
 # a body did within a step.
 _ALIKE = {tuple(name for name, _ in fields) for fields in ([*VELOCITY, *ANGULAR_VELOCITY], MOTION)}
 
-_composed: dict[Any, str] = {}
 
-
+@cache
 def composed_name(kind: Any) -> str:
     """Return which of the records that plans compose a type is; "" for all others."""
-    found = _composed.get(kind)
-    if found is None:
-        found = _composed[kind] = _name_of(kind)
-    return found
-
-
-def _name_of(kind: Any) -> str:
     if not isinstance(kind, types.Record) or not kind.aligned:
         return ""
     names = tuple(sorted(kind.fields, key=kind.offset))
