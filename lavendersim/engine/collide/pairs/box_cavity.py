@@ -6,8 +6,9 @@ The feature of a point is its corner, bit 0, 1, 2 set where the corner lies at +
 from __future__ import annotations
 
 from ...compile import kernel, once
-from ...vectors import Vec3, from_body, plus, position
+from ...vectors import from_body, plus, position
 from ..manifold.cavity_points import CorePoint, make_put_point
+from ..shapes.box import corner_of
 
 
 @once
@@ -18,12 +19,7 @@ def make(spec):
     def box_cavity(cavity, box, margin, scratch):
         count = 0
         for corner in range(8):
-            c = Vec3(
-                box.hx if corner & 1 else -box.hx,
-                box.hy if corner & 2 else -box.hy,
-                box.hz if corner & 4 else -box.hz,
-            )
-            p = plus(position(box), from_body(box, c))
+            p = plus(position(box), from_body(box, corner_of(box, corner)))
             core = CorePoint(p, 0.0, corner)
             count = put_point(cavity, core, margin, scratch.manifold, count)
         return count

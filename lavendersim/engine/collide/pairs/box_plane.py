@@ -13,6 +13,7 @@ from __future__ import annotations
 from ...compile import inner, kernel
 from ...vectors import Vec3, dot, from_body, into_body
 from ..manifold.point import LEFT_OUT, WHOLE, place, put_manifold_normal, swap_points
+from ..shapes.box import corner_of
 
 
 @inner
@@ -51,11 +52,7 @@ def make(spec):
         put_manifold_normal(scratch.manifold, n)
         count = 0
         for corner in range(8):
-            c = Vec3(
-                box.hx if corner & 1 else -box.hx,
-                box.hy if corner & 2 else -box.hy,
-                box.hz if corner & 4 else -box.hz,
-            )
+            c = corner_of(box, corner)
             phi = height + local.x * c.x + local.y * c.y + local.z * c.z
             if phi <= margin:
                 p, half = from_body(box, c), 0.5 * phi

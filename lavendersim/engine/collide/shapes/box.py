@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
-from ...compile import kernel
+from ...compile import inner, kernel
 from ...vectors import Vec3, from_body, into_body
 from .polyhedron import box_row, edge_of_facet, facet_along, feature_of_facet, put_loop
+
+
+@inner
+def corner_of(box, corner):
+    """Return a corner in the box's frame: bit 0, 1, 2 set where it lies at +x, +y, +z."""
+    return Vec3(
+        box.hx if corner & 1 else -box.hx,
+        box.hy if corner & 2 else -box.hy,
+        box.hz if corner & 4 else -box.hz,
+    )
 
 
 def make_support(spec):
