@@ -103,7 +103,9 @@ def test_json_has_every_sample_and_the_answers(costed: Path, tmp_path: Path) -> 
     )
     assert done.returncode == 0, done.stderr
     (table,) = json.loads(done.stdout)
-    assert {len(row["samples"]) for row in table["rows"]} == {8}
+    # The eighth round is left out where the first seven settled (`runner/rounds.py`).
+    assert table["repeats"] in (7, 8)
+    assert {len(row["samples"]) for row in table["rows"]} == {table["repeats"]}
     assert [answer["target"] for answer in table["targets"]] == [0.5]
 
 
