@@ -35,7 +35,8 @@ from .field_places import composed_in, places_in
 from .kernel_lowering import KernelLowering, is_direct, names_places
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of
 from .memory_references import REFERENCES, are_rows
-from .separate_code import merge, optimise, separate_code
+from .optimisation import optimise
+from .separate_code import merge, separate_code
 
 if llvm_version_info < (17, 0, 0):
     raise ImportError("pointers have types: a part serves one layout of records only")

@@ -25,33 +25,15 @@ from llvmlite.binding import (
     parse_assembly,
     parse_bitcode,
 )
-from numba.core import config
 
 from .field_places import PREFIX, definitions, digest
 from .kernel_parts import STORE, KernelPart, merged_into, separate_in, with_called
+from .optimisation import optimise
 
 # Behind the symbol of a part, with digits of the places of fields: the symbol of its object.
 ENTRY = ".separate."
 NAME = re.compile(r'%(?:[-\w.$]+|"[^"]*")')  # of a value in LLVM's text
-# LLVM's first level takes two thirds of the time of its third, and kernels are as fast, as far as
-# a busy machine shows: a stack of six and 216 balls within 3 %, 216 boxes within 1 to 9 %.
-LEVEL = 1
 _loaded: set[str] = set()  # symbols of separate parts that this process can call
-
-
-def optimise(module: Any, parts: set[str], codegen: Any) -> None:
-    """Optimise a module once, with parts of these symbols in it.
-
-    Parts are called from here alone, so what is called once is merged whole. Numba would optimise
-    twice, so that counts of references meet in one function. Kernels count none, and are as fast
-    after the first time.
-    """
-    for function in module.functions:
-        merged = function.name in parts or function.linkage == Linkage.linkonce_odr
-        if merged and not function.is_declaration:
-            function.linkage = Linkage.internal
-    passes, builder = codegen._module_pass_manager(opt=min(LEVEL, config.OPT))  # type: ignore[attr-defined]
-    passes.run(module, builder)
 
 
 def merge(

@@ -1,0 +1,64 @@
+"""Functions of a module that are called once, or are short, are merged into what calls them."""
+
+from __future__ import annotations
+
+import pytest
+from llvmlite.binding import parse_assembly
+from numba.core import config
+from numba.core.registry import cpu_target
+
+from lavendersim.engine.compile import Kernel
+from lavendersim.engine.optimisation import SHORT, counted, optimise
+
+pytestmark = pytest.mark.skipif(Kernel is None, reason="this numba compiles kernels whole")
+
+
+def function(name: str, *, lines: int = 0, calls: tuple[str, ...] = ()) -> str:
+    """Return a function of so many stores, which nothing may leave out, that calls others."""
+    body = [f"  store volatile i64 {line}, ptr %p" for line in range(lines)]
+    body += [f'  call void @"{called}"(ptr %p)' for called in calls]
+    return "\n".join([f'define void @"{name}"(ptr %p) {{', *body, "  ret void", "}", ""])
+
+
+def left(text: str, parts: set[str]) -> set[str]:
+    """Return the functions that a module of this text has when it is optimised."""
+    module = parse_assembly(text)
+    optimise(module, parts, cpu_target.target_context.codegen())
+    module.verify()
+    return {each.name for each in module.functions if not each.is_declaration}
+
+
+@pytest.fixture(autouse=True)
+def optimised_as_for_users(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(config, "OPT", config._OptLevel(3))  # type: ignore[attr-defined]
+
+
+def test_calls_and_lengths_are_those_of_the_text():
+    text = function("a.b", calls=("a long name", "plain", "plain"))
+    text += function("plain", lines=3) + function("a long name")
+    calls, lengths = counted(str(parse_assembly(text)))
+    assert calls == {"plain": 2, "a long name": 1}
+    # every block has its end, `ret`; no label is written where a function has one block
+    assert lengths == {"a.b": 4, "plain": 4, "a long name": 1}
+
+
+def test_what_is_called_once_is_merged_whatever_its_length():
+    whole = function("whole", calls=("part",)) + function("part", lines=2 * SHORT)
+    assert left(whole, {"part"}) == {"whole"}
+
+
+@pytest.mark.parametrize(("lines", "merged"), [(SHORT // 2, True), (2 * SHORT, False)])
+def test_what_is_called_twice_is_merged_where_it_is_short(lines: int, merged: bool):
+    whole = function("whole", calls=("part", "part")) + function("part", lines=lines)
+    assert left(whole, {"part"}) == ({"whole"} if merged else {"whole", "part"})
+
+
+def test_what_others_may_call_stays():
+    whole = function("whole", calls=("other",)) + function("other")
+    assert left(whole, set()) == {"whole", "other"}
+
+
+def test_without_optimisation_nothing_is_merged(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(config, "OPT", config._OptLevel(0))  # type: ignore[attr-defined]
+    whole = function("whole", calls=("part",)) + function("part")
+    assert left(whole, {"part"}) == {"whole", "part"}
