@@ -12,6 +12,7 @@ At the end of a step a velocity violates its contacts by O(dt^2), because they h
 the next step begins with it and does not add to it. So dv is taken without the part that contacts
 would take away: with J (dv + M^-1 J^T p) = 0 of all rows that push or hold, and of tangents that
 stick. A motor that gives its most holds nothing.
+What bends of contact forces hide from both is added (`hidden_bends`).
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ from .collide.records import put_normal
 from .compile import inner, kernel
 from .contact import make_apply_block, make_complete_row, make_normal_velocity
 from .effects import made_once
+from .hidden_bends import BENDS, make_missed, make_note_loads
+from .motor_reach import SPENDS
 from .records import Field
 from .row_terms import row_terms
 from .spec import Spec
@@ -41,13 +44,19 @@ SWEEPS, JOINT_SWEEPS, BEYOND = 20, 3000, 1.5
 # What solves leave is along these rows, too, and may be far more than they part by: so much of
 # it is left [-].
 ENOUGH = 1e-3
-# A contact sticks, and a motor holds, by less than this share of the most it may be.
+# A contact sticks by less than this share of the most that its friction may be.
 STICKS = 0.999
 
 # What a body has done since the run began.
 PATH: Final[list[Field]] = [
     ("length", "f8"),  # of the path of its centre, and of its rim about it [m]
     ("fastest", "f8"),  # speed of its fastest point, at most [m/s]
+    # Force of contacts on it, all together [N]: in the last half of the substep before, and in both
+    # halves of this one.
+    ("load", "f8"),
+    ("first_load", "f8"),
+    ("last_load", "f8"),
+    ("load_dt", "f8"),  # of the half that `load` is of [s]
 ]
 
 
@@ -139,7 +148,7 @@ def make_respect_contacts(spec: Spec) -> Any:
                 pushes = True
                 if bounded:
                     if contact.motor == 1:  # and one that gives its most does not
-                        pushes = abs(contact.lambda_n) < STICKS * contact.most
+                        pushes = abs(contact.lambda_n) < SPENDS * contact.most
         return pushes
 
     acts = kernel(acts, spec)
@@ -180,13 +189,13 @@ def make_respect_contacts(spec: Spec) -> Any:
 
 
 def make_add_paths(spec: Spec) -> Any:
-    """Return `kernel(bodies, velocities, before, paths)`: those through a substep added.
+    """Return `kernel(bodies, velocities, before, paths, half)`: those through a substep added.
 
-    before: rows of the bodies at its start.
+    before: rows of the bodies at its start; half: of the substep [s].
     """
     turns, point_speed = step_terms(spec).turns, make_point_speed(spec)
 
-    def add_paths(bodies, velocities, before, paths):
+    def add_paths(bodies, velocities, before, paths, half):
         for i in range(bodies.shape[0]):
             body = bodies[i]
             if body.inv_m > 0.0:
@@ -194,16 +203,18 @@ def make_add_paths(spec: Spec) -> Any:
                 if turns:
                     moved += body.bound * angle(body, before[i])
                 paths[i].length += moved
+                paths[i].load, paths[i].load_dt = paths[i].last_load, half
                 paths[i].fastest = max(paths[i].fastest, point_speed(body, velocities[i]))
 
     return kernel(add_paths, spec)
 
 
 def make_estimate(spec: Spec) -> Any:
-    """Return `kernel(state, count, left, params, residual)`.
+    """Return `kernel(state, count, left, params, residual, ordered)`.
 
     `state.control` has the bodies that the whole substep led to, and its velocities, which are made
-    differences. left: of the run, behind the substep [s]; residual: of its last solve [m/s].
+    differences. left: of the run, behind the substep [s]; residual: of its last solve [m/s];
+    ordered: whether all impacts of the substep had their order.
     Returns e, the error of the same body that solves may leave, and that body; -1: none has one.
     """
     turns, touches = step_terms(spec).turns, spec.touches
@@ -211,6 +222,8 @@ def make_estimate(spec: Spec) -> Any:
     respect_contacts: Any = make_respect_contacts(spec) if touches else None
     joined = row_terms(spec).bilateral
     stand_at_end: Any = make_stand_at_end(spec) if joined else None
+    note_loads: Any = make_note_loads(spec) if touches else None
+    missed: Any = make_missed(spec) if touches else None
 
     def subtract(v, dv):
         dv.vx, dv.vy, dv.vz = v.vx - dv.vx, v.vy - dv.vy, v.vz - dv.vz
@@ -219,7 +232,7 @@ def make_estimate(spec: Spec) -> Any:
 
     subtract = kernel(subtract, spec)
 
-    def estimate(state, count, left, params, residual):
+    def estimate(state, count, left, params, residual, ordered):
         bodies, velocities = state.bodies, state.velocities
         control = state.control
         other, differences, paths = control.whole, control.differences, control.paths
@@ -230,6 +243,9 @@ def make_estimate(spec: Spec) -> Any:
             stand_at_end(state, count, differences)
         if touches:
             respect_contacts(state.contacts, count, differences, noise)
+            note_loads(state.contacts, count, paths, params.dt)
+            record = control.record[0]
+            bends = record.cuts == 0 and ordered and record.length > BENDS * params.timestep
         largest, floor, worst = 0.0, 0.0, -1
         for i in range(bodies.shape[0]):
             body = bodies[i]
@@ -237,6 +253,13 @@ def make_estimate(spec: Spec) -> Any:
                 off, dv = distance(body, other[i]), point_speed(body, differences[i])
                 if turns:
                     off += body.bound * angle(body, other[i])
+                if touches:
+                    if bends and paths[i].load > 0.0:
+                        before, half = control.velocities[i], 0.5 * record.length
+                        hidden = missed(
+                            body, before, control.middle[i], velocities[i], paths[i], half
+                        )
+                        dv = max(dv, hidden / SHARE)
                 speed = point_speed(body, velocities[i])
                 speed = max(speed, paths[i].fastest, body.bound / params.duration)
                 path = max(body.bound, paths[i].length + speed * left)

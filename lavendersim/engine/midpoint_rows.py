@@ -304,8 +304,7 @@ def make_shift(spec: Spec) -> Any:
                 if bounded:
                     if contact.motor == 1:
                         contact.driven = contact.middle_n
-                        if contact.couple == 0:  # what turns begins with what turns it, too
-                            contact.target += contact.middle_n - contact.begin_n
+                        contact.target += contact.middle_n - contact.begin_n
                         return
                 contact.target = contact.middle_n
                 # Of a joint that an impact or its first velocities tear, nothing is thrown back.

@@ -35,6 +35,7 @@ from .integrate import (
 )
 from .kernel_cache import cached
 from .kernel_store import kernels_on_disk
+from .motor_reach import make_note_drive, reaches_speeds
 from .overlooked_points import make_forget_whole
 from .parts import has_parts, make_end_step, make_forget_history, make_gather_parts
 from .records import (
@@ -101,6 +102,8 @@ def make_advance(spec: Spec) -> Any:
     start_step: Any = chain(starting, spec) if starts else None
     ordered, order = made_once(spec, "order_impacts")
     note_acceleration: Any = make_note_acceleration(spec) if ordered else None
+    reaches = reaches_speeds(spec)
+    note_drive: Any = make_note_drive(spec) if reaches else None
     controlled = step_terms(spec).substeps
     in_parts = has_parts(spec)
     gather: Any = make_gather_parts(spec) if in_parts else None
@@ -277,6 +280,8 @@ def make_advance(spec: Spec) -> Any:
                     continue
             if ordered:
                 note_acceleration(bodies, velocities, motion, params)
+            if reaches:
+                note_drive(state, count, params)
             moved = counters.projection_sweeps > 0
             diverged, cause = integrate(bodies, velocities, motion, state.pseudo, moved, params.dt)
             if ends:

@@ -17,6 +17,7 @@ from .compile import kernel
 from .drives import NEAR, make_begin_of_part, make_next_knot
 from .effects import has_hook, made_by
 from .error_estimate import PATH, make_add_paths, make_estimate
+from .hidden_bends import make_note_loads
 from .record_layout import cache_dtype, step_row_dtype
 from .records import COUNTERS, Field, dtype
 from .row_terms import row_terms
@@ -72,6 +73,7 @@ class Control(NamedTuple):
     row: np.ndarray  # (1,) of the log; none where nothing is logged
     whole: np.ndarray  # (n,) bodies that the whole substep leads to
     differences: np.ndarray  # (n,) velocities that it leads to, then what they differ by
+    middle: np.ndarray  # (n,) velocities where its first half ends
     cuts: np.ndarray  # (MOST_PARTS,) f8, ends of its parts, from the start of the step [s]
     unparted: Any  # (n,) i8, as MOTION has it at the start of the substep; () without joints
 
@@ -95,6 +97,7 @@ def allocate_control(spec: Spec, bodies: np.ndarray, velocities: np.ndarray, cap
         row=np.zeros(1 if has_hook(spec, "log_step") else 0, step_row_dtype(spec)),
         whole=np.zeros_like(bodies),
         differences=np.zeros_like(velocities),
+        middle=np.zeros_like(velocities),
         cuts=np.zeros(MOST_PARTS),
         unparted=np.zeros(len(bodies), np.int64) if keeps_unparted(spec) else (),
     )
@@ -285,6 +288,8 @@ def make_end_span(spec: Spec) -> Any:
     """
     restore, judge, next_middle = make_restore(spec), make_judge(spec), make_next_middle(spec)
     estimate, add_paths = make_estimate(spec), make_add_paths(spec)
+    touches = spec.touches
+    note_loads: Any = make_note_loads(spec) if touches else None
 
     def end_half(counters):
         counters.part_unordered |= counters.unordered
@@ -310,21 +315,26 @@ def make_end_span(spec: Spec) -> Any:
                     next_middle(control)
                 else:
                     record.phase, record.until = SECOND_HALF, record.end
+                    for i in range(state.bodies.shape[0]):
+                        control.middle[i] = state.velocities[i]
+                    if touches:
+                        note_loads(state.contacts, count, control.paths, params.dt)
                 end_half(counters)
                 return GO_ON
         record.phase = NOTHING
         error, floor, worst = np.inf, 0.0, counters.body
         if not failed:
             left = params.duration - (record.before + record.end)
-            error, floor, worst = estimate(state, count, left, params, counters.residual)
+            ordered = counters.unordered == 0 and counters.part_unordered == 0
+            error, floor, worst = estimate(state, count, left, params, counters.residual, ordered)
         # A step that has had them all is as far from its end as ever: chaos takes no fewer.
         exhausted = counters.substeps >= MOST_SUBSTEPS
         if judge(record, params, error, floor) and not exhausted:
-            add_paths(state.bodies, state.velocities, control.bodies, control.paths)
+            half = 0.5 * record.length
+            add_paths(state.bodies, state.velocities, control.bodies, control.paths, half)
             record.spent += max(error - floor, 0.0)
             record.start = record.end
             end_half(counters)
-            half = 0.5 * record.length
             counters.shortest = half if counters.substeps == 0 else min(counters.shortest, half)
             counters.substeps += 2
             counters.estimated_error += error

@@ -123,14 +123,15 @@ def work_of_forces(trace: Trace) -> Floats:
                 displacement[row] -= vector(event.teleport) - trace.pose[row - 1, body, :3]
         done = displacement @ vector(force.force)
         if any(force.torque):
-            turns = _turns(trace.pose[:, body, 3:])
+            pieces = _substeps(trace)
+            turns = _turns(trace.pose[:, body, 3:], pieces)
             for event in changes_of_bodies(trace.events):
                 row = first_starting_at(trace, event.at)
                 if event.orientation is None or event.body != force.body:
                     continue
                 if 0 < row < len(turns):  # it turns from where the event has put it
                     ends = np.array([event.orientation, trace.pose[row, body, 3:]])
-                    turns[row] = _turns(ends)[1]
+                    turns[row] = _turns(ends, pieces[[row - 1, row]])[1]
             done = done + turns @ vector(force.torque)
         work += np.where(acts, done, 0.0)
     return work
@@ -250,13 +251,28 @@ def _acting(trace: Trace, force: CellForce) -> slice:
     return slice(first_starting_at(trace, force.begin), first_starting_at(trace, force.end))
 
 
-def _turns(quaternions: Floats) -> Floats:
+def _substeps(trace: Trace) -> Floats:
+    """Return of how many substeps each step is, at least 1: those of error control."""
+    if "substeps" not in (trace.step.dtype.names or ()):
+        return np.ones(len(trace.step))
+    made: Floats = np.maximum(trace.step["substeps"], 1).astype(float)
+    return made
+
+
+def _turns(quaternions: Floats, pieces: Floats) -> Floats:
     """Return angular velocity times dt of each step as a vector in world axes (n, 3); w x y z in.
 
-    A step turns by Cayley's map: the tangent of half the angle is half of what is returned.
+    A step, or each of its substeps, turns by Cayley's map: the tangent of half the angle is half of
+    what is returned. pieces: how many substeps it has, which are taken as equally long.
     """
     real, imaginary = turns_between(quaternions[:-1], quaternions[1:])
     turns = np.zeros((len(quaternions), 3))
     with np.errstate(invalid="ignore", divide="ignore"):
         turns[1:] = 2.0 * imaginary / real[:, None]
+        several = np.flatnonzero(pieces[1:] > 1.0)
+        if len(several):
+            sine, made = np.linalg.norm(imaginary[several], axis=1), pieces[1:][several]
+            half = np.arctan2(sine, real[several])
+            share = np.where(sine > 0.0, made * np.tan(half / made) / sine, 1.0)
+            turns[1 + several] = 2.0 * imaginary[several] * share[:, None]
     return turns

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from shared_runs import GRAVITY, States, ball, config, flow, plane, run_scenes
 from test_error_control import BRICK, DOWN, asking, table
 
@@ -26,6 +27,8 @@ TABLE_RATE, PLACE = 12.0 * math.pi, 0.6  # [rad/s], [m] from its axis
 RISES, STOPS = 0.8, 7.2  # [m/s], so many longest substeps later
 PUSH, PUSHES = 40.0, 3.3  # [N] on 1 kg, for so many longest substeps
 BAR_RATE = 10.0  # [rad/s]
+SHAKEN, SHAKES = 0.02, 10.0 * math.pi  # of a plate [m], [rad/s]
+LIGHT = GRAVITY / (SHAKEN * SHAKES**2)  # share of its acceleration that lets a ball go
 SPIN = (100.0, 60.0, 45.0)  # 125 rad/s
 
 
@@ -109,8 +112,38 @@ def thrown(at: float, time: np.ndarray) -> np.ndarray:
     return met_by_a_bar(at) + 2.0 * 0.6 * BAR_RATE * since[:, None] * ahead
 
 
+def shaken(at: float) -> str:
+    """A plate that is shaken lets the ball go where it accelerates downwards by g."""
+    phase = math.asin(LIGHT) - SHAKES * at
+    turned = f"frequency: {SHAKES / (2 * math.pi)!r}, phase_degrees: {math.degrees(phase)!r}"
+    motion = f"displacement: [0, 0, {SHAKEN!r}], factor: {{kind: sine, {turned}}}"
+    shape = "shape: {kind: box, size: [1, 1, 0.2]}, surface: one, position: [0, 0, -0.1]"
+    plate = f"{{{shape}, kinematic: true, motion: [{{{motion}}}]}}"
+    up = (0, 0, SHAKEN * SHAKES * math.cos(phase))
+    bodies = {"plate": plate, "ball": ball(0.1, 1.0, (0, 0, 0.1), up)}
+    return config(bodies, 60, 0.3, "restitution: 0", DOWN)
+
+
+def let_go(at: float, time: np.ndarray) -> np.ndarray:
+    """It flies from there until the plate, on its way up, has it again."""
+    phase = math.asin(LIGHT) - SHAKES * at
+
+    def plate(t: np.ndarray | float) -> np.ndarray:
+        return np.asarray(SHAKEN * (np.sin(SHAKES * t + phase) - math.sin(phase)))
+
+    def flight(t: np.ndarray | float) -> np.ndarray:
+        since = t - at
+        speed = SHAKEN * SHAKES * math.cos(SHAKES * at + phase)
+        return np.asarray(plate(at) + speed * since - 0.5 * GRAVITY * since**2)
+
+    back = brentq(lambda t: float(flight(t) - plate(t)), at + 0.05, at + 0.2, xtol=1e-14)
+    z = np.where((time > at) & (time < back), flight(time), plate(time))
+    return places(0.0, 0.0, 0.1 + z)
+
+
 SCENES = {
     "lands on a turntable": Phased(lands, landed),
+    "is let go by a plate that is shaken": Phased(shaken, let_go),
     "rises with a table": Phased(rises, risen),
     "is pushed": Phased(pushed, driven),
     "is met by a bar that turns": Phased(swept, thrown),
@@ -145,7 +178,17 @@ def test_what_curves_behind_an_impact_is_as_accurate_at_every_phase(
         assert 0.1 <= achieved["lands on a turntable", phase, accuracy] / accuracy <= 10.0
 
 
-@pytest.mark.parametrize("name", list(SCENES)[1:])
+@pytest.mark.parametrize("accuracy", ACCURACIES)
+def test_what_is_let_go_by_a_force_that_bends_is_as_accurate_at_every_phase(
+    achieved: dict[tuple[str, float, float], float], accuracy: float
+) -> None:
+    """What a whole substep and its halves miss alike there is as small as what they differ by."""
+    for phase in PHASES:
+        share = achieved["is let go by a plate that is shaken", phase, accuracy] / accuracy
+        assert 0.1 <= share <= 10.0
+
+
+@pytest.mark.parametrize("name", list(SCENES)[2:])
 def test_what_bends_or_turns_by_a_law_is_without_an_error(
     achieved: dict[tuple[str, float, float], float], name: str
 ) -> None:

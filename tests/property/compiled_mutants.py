@@ -53,6 +53,11 @@ OF_FILES = {
         "tests/physics/test_error_control.py",
         "tests/physics/test_accuracy_of_joints.py",
     ),
+    "hidden_bends.py": ("tests/physics/test_accuracy_of_drives.py",),
+    "motor_reach.py": (
+        "tests/physics/test_joint_drives.py",
+        "tests/physics/test_accuracy_of_drives.py",
+    ),
     "drives.py": ("tests/physics/test_functions_of_time.py",),
     "spring_midpoint.py": ("tests/physics/test_springs_at_the_middle.py",),
     "midpoint_*": ("tests/physics/test_contact_at_second_order.py",),

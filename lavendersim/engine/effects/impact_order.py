@@ -28,8 +28,9 @@ from ..records import TOUCHING
 from ..spec import Spec
 from ..step_terms import step_terms
 from ..terms import StepTerms
-from .decision import Decision, Facts, meeting
+from .decision import Decision, Facts, meeting, named
 from .effect import Choice, Column, Effect, Fields, Hooks, kernel
+from .joint_models import driving
 
 # Rows of contacts that the parts of one step may have in all.
 WORK = 512
@@ -70,6 +71,9 @@ def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and impacts may follow each other, or turn as they come."""
     if facts.impacts != "in_order":
         return Decision(False, f"impacts are {facts.impacts}")
+    driven = driving(facts)
+    if driven:
+        return Decision(True, f"{named(driven)}: a motor reaches its speed within a step")
     if not meeting(facts):
         return Decision(False, "nothing can touch")
     only = facts.pairs[0]
@@ -107,6 +111,7 @@ def make_order(spec: Spec) -> Any:
     from ..foreseen_impacts import make_follow, make_foresee, make_let_rebound, make_rebounds
     from ..impact_location import make_locate
     from ..impact_rows import make_keep_motion, make_keep_present, make_mark_impact
+    from ..motor_reach import make_first_reach, reaches_speeds
     from ..row_terms import make_is_soft, row_terms
     from ..stiff_springs import may_rebound
     from . import made_once
@@ -124,6 +129,8 @@ def make_order(spec: Spec) -> Any:
     rebounds = may_rebound(spec)
     any_rebounds: Any = make_rebounds(spec)
     stops, first_stop = made_once(spec, "first_stop")
+    driven = reaches_speeds(spec)
+    first_reach: Any = make_first_reach(spec) if driven else None
 
     def first_due(contacts, count):
         first, due = -1, NEVER
@@ -163,9 +170,11 @@ def make_order(spec: Spec) -> Any:
     let_rebound: Any = make_let_rebound(spec) if rebounds else None
 
     def until_stop(state, count, length, params, counters):
-        # The part that ends where sliding stops, if that comes first.
+        # The part that ends where sliding stops or a motor has its speed, if that comes first.
         if stops:
-            return min(length, first_stop(state, count, params, counters))
+            length = min(length, first_stop(state, count, params, counters))
+        if driven:
+            length = min(length, first_reach(state, count, params, counters))
         return length
 
     until_stop = kernel(until_stop, spec)

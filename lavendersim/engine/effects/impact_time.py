@@ -20,6 +20,7 @@ from ..step_terms import step_terms
 from ..terms import StepTerms
 from .decision import Decision, Facts, meeting
 from .effect import Choice, Effect, Fields, Hooks, kernel
+from .joint_models import driving
 
 # Slower than so many times what forces change in a step, surfaces come to rest, without an impact.
 SLOWEST = 4.0
@@ -29,7 +30,8 @@ def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and something can touch."""
     if facts.impacts == "captured":
         return Decision(False, f"impacts are {facts.impacts}")
-    if meeting(facts):
+    # Where a motor reaches its speed a step has parts, too.
+    if meeting(facts) or driving(facts):
         return Decision(True, f"impacts are {facts.impacts}")
     return Decision(False, "nothing can touch")
 

@@ -42,7 +42,6 @@ def decide(facts: Facts) -> Decision:
 # Solvers whose sweeps take rows without a cone.
 SOLVERS = ("adaptive", "projected_gauss_seidel")
 IMPACTS = ("in_order", "captured")
-ACCURATE = ("ball", "hinge")  # kinds of which errors are known where an accuracy is asked for
 MOVES = ("teleport", "orientation")  # of an event: at once, whatever joints there are
 
 
@@ -62,16 +61,6 @@ def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
     if numerics.impacts == "in_order" and numerics.simultaneous_impacts != "together":
         sentence = f"{has}, which pass impacts on at once; expected together"
         yield ("numerics", "simultaneous_impacts"), sentence
-    if numerics.accuracy is not None:
-        for joint in joints.values():
-            unproven = joint.kind not in ACCURATE or joint.motor_row or joint.stop_rows
-            if unproven:
-                sentence = (
-                    f"the joint of {joint.name_of_pair} is no ball joint or hinge without limits "
-                    "and a motor, which alone are known to be so accurate; leave it out"
-                )
-                yield ("numerics", "accuracy"), sentence
-                break
     if numerics.sleeping:
         yield ("numerics", "sleeping"), f"{has}, and what they hold does not sleep; leave it out"
     if config.scene.springs and numerics.integrator != "midpoint_contact":

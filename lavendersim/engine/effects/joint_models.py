@@ -239,6 +239,16 @@ def holding(scene: Any) -> Mapping[str, Joint]:
     }
 
 
+def driving(facts: Any) -> list[str]:
+    """Return the pairs of bodies whose joint has a motor that reaches its speed within a step.
+
+    Where contact is at the middle of the step, so that it is of second order.
+    """
+    if facts.scene is None or facts.integrator != "midpoint_contact":
+        return []
+    return [one.name_of_pair for one in holding(facts.scene).values() if one.motor_row]
+
+
 def turned_by_joints(scene: Any) -> Iterator[str]:
     """Yield the movable bodies that a joint may turn: beside their centre, or with the other."""
     for one in holding(scene).values():

@@ -5,7 +5,8 @@ s_AB: spin of B against A about the axis, or speed along it. A row of the joint 
 bound of either sign: clamped by sweeps, a projection for Newton's method. That of a hinge is a
 couple, without a force: its n is 0, and both levers are the axis, 1 m long, so that w is a speed
 [m/s] and lambda an impulse [N s] as those of all rows.
-Speed 0 is friction of a joint: it holds up to its most, and beyond takes what it can.
+Speed 0 is friction of a joint: it holds up to its most, and beyond takes what it can. Where contact
+is at the middle of the step a part ends when it has its speed (`engine.motor_reach`).
 
 Its work in a step, lambda (s_0 + s_1)/2 at the pose of the solve, is what enters the balance of
 energy; lambda s_1 where bodies move by the velocity that the step ends with.
@@ -62,6 +63,7 @@ EFFECT = Effect(
     row=RowTerms(bounded=True),
     balance=Balance(work="motor_work"),
     fields=Fields(
+        body=[("drive_rate", "f8")],  # of B's end: of the row's speed in the last part [m/s^2]
         pair=[
             ("motor_speed", "f8"),  # of B's end from A's, of a spin at 1 m [m/s]
             ("motor_most", "f8"),  # by which it pushes at most, of a torque at 1 m [N]; others: 0

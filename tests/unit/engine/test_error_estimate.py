@@ -65,7 +65,7 @@ class Pair:
             control=control,
         )
         params = one_row(duration=DURATION, tolerance=1e-6)
-        return kernel(state, 0, left, params, residual)
+        return kernel(state, 0, left, params, residual, True)
 
 
 def test_it_is_richardsons_of_a_place() -> None:
@@ -179,7 +179,7 @@ def test_paths_are_those_of_the_centre_and_of_the_rim() -> None:
     pair.paths["length"], pair.paths["fastest"] = 1.0, [0.0, 3.4]
     for speed in (3.5, 3.5):
         arguments = pair.bodies, pair.velocities, before, pair.paths
-        add_paths(*(records(array) for array in arguments))
+        add_paths(*(records(array) for array in arguments), 0.01)
         assert pair.paths["fastest"].tolist() == [0.0, speed]
     chord = 2.0 * np.sin(0.5 * angle)
     assert pair.paths["length"] == pytest.approx([1.0, 1.0 + 2.0 * (0.5 + 0.5 * chord)], rel=1e-12)

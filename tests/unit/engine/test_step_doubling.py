@@ -346,6 +346,22 @@ def test_who_woke_is_awake_when_the_substep_is_made_again() -> None:
         assert made.bodies["rest"][0] == (0.0 if woke else 3.0)
 
 
+def test_joints_that_stayed_together_are_known_to_when_the_substep_is_made_again() -> None:
+    """The whole tears them, or finds them torn: neither half may take that for its own past."""
+    spec = SPEC.including("joint", "contact_midpoint", "frictionless_contact", "compound")
+    assert not step_doubling.keeps_unparted(SPEC)
+    for stayed in (0, 1):
+        made = Substeps(spec)
+        motion = np.zeros(1, [("unparted", "i8")])
+        made.state.motion = records(motion)
+        motion["unparted"] = stayed
+        made.begin()
+        motion["unparted"] = 1 - stayed
+        restore = interpreted(step_doubling.make_restore(spec))
+        restore(made.state, made.params, records(made.counters), records(made.rows))
+        assert motion["unparted"][0] == stayed
+
+
 def test_memory_grows_with_contacts_where_impulses_are_kept() -> None:
     bodies, velocities = allocate_bodies(SPEC, 2), allocate_velocities(SPEC, 2)
     control = step_doubling.allocate_control(SPEC, bodies, velocities, 3)

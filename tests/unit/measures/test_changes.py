@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.lib.recfunctions import append_fields
 
 from lavendersim.errors import UsageError
 from lavendersim.measures import balance, changes
@@ -103,6 +104,19 @@ def test_the_work_of_a_torque_is_that_of_the_turn_from_where_an_event_put_the_bo
     log = log_of(resolved, np.zeros((3, 1, 3)), quaternions)
     turn = 2.0 * np.tan(0.01)
     np.testing.assert_allclose(changes.work_of_forces(log), [0.0, 5 * turn, 5 * turn], rtol=1e-13)
+
+
+def test_the_work_of_a_torque_is_that_of_the_turns_of_substeps() -> None:
+    """Each turns by Cayley's map: four of 0.1 rad are not one of 0.4; of none it is one step's."""
+    angles = np.array([0.0, 0.4, 0.8, 0.8])
+    quaternions = np.zeros((4, 1, 4))
+    quaternions[:, 0, 0], quaternions[:, 0, 3] = np.cos(angles / 2), np.sin(angles / 2)
+    ball = {"shape": {"kind": "sphere", "radius": 0.1}, "mass": MASS}
+    force = {"body": "ball", "from": 0.0, "to": 1.0, "force": [0, 0, 0], "torque": [0, 0, 5.0]}
+    log = log_of(scene_of({"ball": ball}, forces=[force]), np.zeros((4, 1, 3)), quaternions)
+    log.step = append_fields(log.step, "substeps", np.array([0, 4, 0, 4]), usemask=False)
+    expected = [0.0, 4 * 10 * np.tan(0.05), 10 * np.tan(0.2), 0.0]
+    np.testing.assert_allclose(changes.work_of_forces(log), expected, rtol=1e-13, atol=1e-13)
 
 
 def test_what_takes_one_gravity_says_so_where_it_changes_and_only_there() -> None:

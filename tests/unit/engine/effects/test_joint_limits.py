@@ -39,24 +39,6 @@ def test_numerics_that_joints_cannot_have_are_refused_at_their_place(key: str) -
 
 
 @pytest.mark.parametrize(
-    "joint",
-    [
-        "{kind: fixed, between: [hook, bob], at: [0, 0, 1]}",
-        "{kind: slider, between: [hook, bob], at: [0, 0, 1], axis: [0, 0, 1]}",
-        "{kind: hinge, between: [hook, bob], at: [0, 0, 1], axis: [0, 1, 0], limits: [-1, 1]}",
-    ],
-)
-def test_an_accuracy_is_refused_where_joints_are_not_known_to_have_it(joint: str) -> None:
-    asked = TEXT.replace("{timestep: 1/100}", "{timestep: 1/100, accuracy: 1e-4}")
-    load_experiment_text(asked, "x.yaml").cells()
-    text = asked.replace("{kind: ball, between: [hook, bob], at: [0, 0, 1]}", joint)
-    with pytest.raises(
-        ConfigError, match=r"x\.yaml:7:29: accuracy: the joint of hook and bob is no"
-    ):
-        load_experiment_text(text, "x.yaml").cells()
-
-
-@pytest.mark.parametrize(
     ("old", "new", "place"),
     [
         (

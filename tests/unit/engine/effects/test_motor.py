@@ -20,11 +20,14 @@ DRIVEN = TEXT.replace("axis: [0, 1, 0]", "axis: [0, 1, 0], motor: {speed: 3, max
 SWAPPED = DRIVEN.replace("between: [hook, bob]", "between: [bob, hook]")
 
 
-def test_a_motor_requires_it_and_nothing_that_meets() -> None:
+def test_a_motor_requires_it_and_parts_of_a_step_where_it_reaches_its_speed() -> None:
     plan = planned(DRIVEN)
     assert plan.decisions["motor"].reason == "hook and bob: a motor drives the joint"
     assert row_terms(plan.spec).bounded
-    assert not {"joint_stop", "impact_order"} & {*plan.spec.effects}
+    assert "joint_stop" not in plan.spec.effects
+    reason = "hook and bob: a motor reaches its speed within a step"
+    assert plan.decisions["impact_order"].reason == reason
+    assert "impact_order" not in planned(TEXT).spec.effects
     assert planned(TEXT).decisions["motor"].reason == "no motor drives a joint"
     config = load_experiment_text(DRIVEN, "x.yaml").cells()[0].config
     assert [pair.row_pairs for pair in facts_of(config).pairs] == [6]
