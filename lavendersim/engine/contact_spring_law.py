@@ -29,6 +29,7 @@ from .compile import inner, kernel
 from .contact import make_normal_velocity
 from .parts import make_forget_history
 from .row_terms import row_terms
+from .solvers.iteration import NOTHING
 from .spec import Spec
 from .step_terms import step_terms
 
@@ -209,9 +210,31 @@ def make_stored(spec: Spec) -> Any:
     return kernel(stored, spec)
 
 
+def make_stop_pushing(spec: Spec) -> Any:
+    """Return `kernel(contact)`: no impulse in place of one that no velocity has a digit of.
+
+    Each tangent of what flies leaves a share FLATTEST of an impulse that it was handed, down to the
+    least of all numbers; and what has one is carried by its contact (`integrate.make_classify`).
+    """
+    terms = row_terms(spec)
+    friction, torsional, rolling = terms.frictional, terms.torsional, terms.rolling
+
+    def stop_pushing(contact):
+        contact.lambda_n = 0.0
+        if friction:
+            contact.lambda_1, contact.lambda_2 = 0.0, 0.0
+        if torsional:
+            contact.psi_n = 0.0
+        if rolling:
+            contact.psi_1, contact.psi_2 = 0.0, 0.0
+
+    return kernel(stop_pushing, spec)
+
+
 def make_solve_by_tangents(spec: Spec, solve: Any) -> Any:
     """Return the kernel of a solver whose rows follow their laws; solve: one of linear rows."""
     linearise, forget_history = make_linearise(spec), make_forget_history(spec)
+    stop_pushing = make_stop_pushing(spec)
 
     def solve_by_tangents(system, workspace, params, counters, residual_rows):
         contacts, count, velocities = system.contacts, system.count, system.velocities
@@ -234,5 +257,9 @@ def make_solve_by_tangents(spec: Spec, solve: Any) -> Any:
         counters.sweeps = sweeps
         if not found:
             counters.not_converged = 1
+        for c in range(count):
+            contact = contacts[c]
+            if contact.lambda_n > 0.0 and contact.k_n * contact.lambda_n <= NOTHING:
+                stop_pushing(contact)
 
     return kernel(solve_by_tangents, spec)

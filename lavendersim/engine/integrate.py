@@ -27,6 +27,9 @@ from .vectors import Vec3
 AFTERWARDS = 1
 ALWAYS = 2
 LASTING = 3  # through the whole step, and its surfaces do not approach as it begins
+# MOTION.midway: impulses changed its velocity at the middle of the step, or no middle was found.
+MIDDLE = 1
+UNFOUND = 2
 # CONTACT.is_impact: what sets the row's target.
 IMPACT = 1  # an impact, at its time
 AHEAD = 2  # a gap that bodies fly into after an impact of theirs: reached, if at all, at the end
@@ -256,7 +259,7 @@ def make_displace(spec: Spec) -> Any:
             if lasting:
                 half = 0.5 * dt
                 x, y, z = half * (m.vx + v.vx), half * (m.vy + v.vy), half * (m.vz + v.vz)
-            if turns and (lasting or m.midway == 1):
+            if turns and (lasting or m.midway == MIDDLE):
                 body.x, body.y, body.z = body.x + x, body.y + y, body.z + z
                 even = True
                 if uneven:
@@ -271,8 +274,9 @@ def make_displace(spec: Spec) -> Any:
                     return True
                 if even:
                     return free_turn(body, v, dt)
-                if m.midway == 0:  # all but still: its contacts are those of the start
-                    if lasting:
+                if m.midway != MIDDLE:  # its contacts are those of the start
+                    # All but still; what was to turn may win energy by a half behind its turn.
+                    if lasting and m.midway != UNFOUND:
                         return turn_in_halves(body, v, m, dt)
                     return free_turn(body, v, dt)
                 # Impulses changed its spin at the middle; what jumps turns with that after them.

@@ -23,7 +23,7 @@ from .rotation import half_turn, is_round
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
-from .vectors import length, minus, position
+from .vectors import Vec3, length, minus, position
 
 # Contacts are looked for at the middle up to this share of a body's size apart.
 APART = 0.1
@@ -240,9 +240,14 @@ def make_look(spec: Spec) -> Any:
 
 
 def make_stay(spec: Spec) -> Any:
-    """Return `kernel(contact, bodies, poses)`: the contact of the start, where the bodies stand."""
+    """Return `kernel(contact, bodies, poses)`: the contact of the start, where the bodies stand.
+
+    Of one that does not last, or is open, each body has the lever that it had: what flies past
+    another by more than its size in half a step does not reach to where that has come.
+    """
     swept, coupled = row_terms(spec).swept, row_terms(spec).coupled
-    arms = row_terms(spec).bilateral and row_terms(spec).levers
+    joined = row_terms(spec).bilateral
+    arms = joined and row_terms(spec).levers
 
     def stay(contact, bodies, poses):
         body, before = bodies[contact.b], poses[contact.b]
@@ -255,6 +260,18 @@ def make_stay(spec: Spec) -> Any:
         if swept:
             contact.tangential_x, contact.tangential_y = contact.at_tx, contact.at_ty
             contact.tangential_z = contact.at_tz
+            parts = contact.lasts == 0 or contact.phi > TOUCHING
+            parts = parts and contact.inv_m_a > 0.0 and contact.inv_m_b > 0.0
+            if joined:
+                parts = parts and contact.bilateral == 0
+            if parts:
+                a, start = bodies[contact.a], poses[contact.a]
+                shift = Vec3(a.x - start.x, a.y - start.y, a.z - start.z)
+                contact.x, contact.y = contact.at_x + shift.x, contact.at_y + shift.y
+                contact.z = contact.at_z + shift.z
+                contact.tangential_x += shift.x - (body.x - before.x)
+                contact.tangential_y += shift.y - (body.y - before.y)
+                contact.tangential_z += shift.z - (body.z - before.z)
         if coupled:
             contact.patch_x, contact.patch_y = contact.at_patch_x, contact.at_patch_y
             contact.patch_z = contact.at_patch_z

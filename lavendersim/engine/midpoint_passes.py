@@ -15,6 +15,7 @@ from .contact import make_apply_start
 from .contact_spring_law import make_linearise
 from .effects import has_hook, made_by, made_once
 from .free_flight import make_widen
+from .integrate import MIDDLE, UNFOUND
 from .midpoint_geometry import (
     make_keep_start,
     make_look,
@@ -88,6 +89,14 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
 
     has_impact = kernel(has_impact, spec)
 
+    def note_unfound(contacts, count, motion):
+        for c in range(count):
+            contact = contacts[c]
+            if acts(contact):
+                motion[contact.a].midway, motion[contact.b].midway = UNFOUND, UNFOUND
+
+    note_unfound = kernel(note_unfound, spec)
+
     def restore(velocities, free, lead, motion):
         for i in range(velocities.shape[0]):
             v, before = velocities[i], free[i]
@@ -135,7 +144,10 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         bodies, velocities, motion = state.bodies, state.velocities, state.motion
         contacts, pairs = state.contacts, state.pairs
         poses, free, lead, rounds = workspace.middle
+        for i in range(motion.shape[0]):
+            motion[i].midway = 0
         if counters.not_converged == 1:
+            note_unfound(contacts, count, motion)
             return False
         if at_surface:
             if has_impact(contacts, count):
@@ -252,6 +264,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             forget_history(counters, log.residual)
             solve(system, workspace.solver, params, counters, log.residual)
             counters.sweeps += sweeps
+            note_unfound(contacts, count, motion)
             return False
         counters.sweeps = sweeps
         if notes:
@@ -259,7 +272,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         for c in range(count):
             contact = contacts[c]
             if acts(contact):
-                motion[contact.a].midway, motion[contact.b].midway = 1, 1
+                motion[contact.a].midway, motion[contact.b].midway = MIDDLE, MIDDLE
         for i in range(motion.shape[0]):
             if motion[i].midway == 0:  # it flies, from the start of the step
                 v, before = velocities[i], free[i]
@@ -291,3 +304,16 @@ def make_stand_up(spec: Spec) -> Any:
             bodies[i] = poses[i]
 
     return kernel(stand_up, spec)
+
+
+def make_go_back(spec: Spec) -> Any:
+    """Return `kernel(state, count, poses)`: as `stand_up`, and contacts where they were there."""
+    stand_up, stay = make_stand_up(spec), make_stay(spec)
+
+    def go_back(state, count, poses):
+        bodies, contacts = state.bodies, state.contacts
+        stand_up(bodies, poses)
+        for c in range(count):
+            stay(contacts[c], bodies, poses)
+
+    return kernel(go_back, spec)

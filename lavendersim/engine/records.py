@@ -113,7 +113,7 @@ MOTION: Final[list[Field]] = [
     ("tau", F8),  # time of its first impact, from the start of the step; dt without one [s]
     ("jumps", I8),  # 1: a contact that does not last pushes it, or what jumps (`midpoint_jumps`)
     ("carried", I8),  # by a contact. 0: free; else AFTERWARDS, ALWAYS, LASTING: see `integrate`
-    ("midway", I8),  # 1: its velocity was changed by impulses at the middle of the step
+    ("midway", I8),  # whether impulses at the middle of the step changed its velocity: `integrate`
     ("unparted", I8),  # 1: its joints stayed together at the last middle
     ("mean_x", F8),  # mean spin of the step, where midway is 1 [rad/s]
     ("mean_y", F8),

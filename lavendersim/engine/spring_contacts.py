@@ -26,7 +26,7 @@ from .compile import kernel
 from .effects import made_once
 from .foreseen_impacts import make_rebounds
 from .integrate import make_classify, make_finish
-from .midpoint_passes import make_stand_up
+from .midpoint_passes import make_go_back
 from .parts import make_forget_history
 from .spec import Spec
 from .spring_limit import make_limit
@@ -67,7 +67,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
     settle = make_limit(spec, place).settle
     join, gains, pull, put, part = make_unions(spec, place)
     classify, bring_on = make_classify(spec), make_bring_on(spec)
-    finish, stand_up = make_finish(spec), make_stand_up(spec)
+    finish, go_back = make_finish(spec), make_go_back(spec)
     forget_history = make_forget_history(spec)
     carries_inertia, refresh_inertia = made_once(spec, "refresh_inertia")
     warms, store_contacts = made_once(spec, "store")
@@ -251,7 +251,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
             classify(contacts, count, motion, params)
             note_push(bodies, poses if midway else bodies, velocities, motion, midway)
             if midway:
-                stand_up(bodies, poses)
+                go_back(state, count, poses)
             begin_again(links, bodies, velocities, motion, dt)
             if carries_inertia:
                 refresh_inertia(bodies, velocities)
@@ -285,7 +285,7 @@ def make_act_beside_contacts(spec: Spec, place: Any, solve: Any) -> Any:
                 return midway
         counters.spring_not_converged += 1
         if midway:
-            stand_up(bodies, poses)
+            go_back(state, count, poses)
         part(links, bodies, motion)
         take_settled(links, bodies, velocities, motion, x, dt)
         pull(links, contacts, bodies, count)

@@ -3,7 +3,8 @@
     python tests/property/fuzz.py --runs 10000 --plans 20 --jobs 2 --keep finds
 
 Every run is one of `fuzz_laws.judged`. All engines have as many of the `--runs`: the one with every
-effect and pair of shapes, the one whose laws joints can be with, and so many drawn `--plans`;
+effect and pair of shapes, the one whose laws joints can be with, the one that is asked for an
+accuracy, and so many drawn `--plans`;
 `--only full plan_3` picks some. Each run is drawn from a seed of its own, so that it is known by
 its number. An engine is one process: where that ends, or a run does not, this run is a find, and
 the next process goes on behind it. The directory `--keep` has a line for every hundred runs, in
@@ -26,7 +27,7 @@ from typing import Any, NamedTuple
 
 from fuzz_draws import Draw
 from fuzz_laws import ENDLESS, judged, loaded, run, text_of
-from fuzz_scenes import FULL, JOINED, Drawn, config_of, plan_of
+from fuzz_scenes import ACCURATE, FULL, JOINED, Drawn, config_of, plan_of
 
 CHUNK = 100  # runs of a line: what an interruption loses at most
 LAWS = ("ended", "diverged", "push", "momentum", "gap", "penetration", "energy", "units")
@@ -185,11 +186,12 @@ def main(arguments: list[str]) -> int:
     """Fuzz as asked for, and say so."""
     parser = argparse.ArgumentParser(description="random configs against the engine")
     parser.add_argument("--runs", type=int, default=600, help="on all engines")
-    parser.add_argument("--plans", type=int, default=2, help="drawn, beside two with everything")
+    parser.add_argument("--plans", type=int, default=2, help="drawn, beside three with all")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time")
     parser.add_argument("--keep", type=Path, default=Path("fuzz_finds"), help="directory of finds")
-    parser.add_argument("--only", nargs="+", metavar="NAME", help="of full, joined, plan_0, ...")
+    names = "of full, joined, accurate, plan_0, ..."
+    parser.add_argument("--only", nargs="+", metavar="NAME", help=names)
     parser.add_argument("--report", action="store_true", help="say what is finished; run nothing")
     asked = parser.parse_args(arguments)
     asked.keep.mkdir(parents=True, exist_ok=True)
@@ -197,9 +199,10 @@ def main(arguments: list[str]) -> int:
         return 1 if summarised(asked.keep) else 0
     if not (asked.keep / "finished.csv").exists():
         (asked.keep / "finished.csv").write_text(",".join(HEADING) + "\n")
-    share = -(-asked.runs // (asked.plans + 2))
+    share = -(-asked.runs // (asked.plans + 3))
     drawn_ones = enumerate(drawn_plans(asked.plans, asked.seed))
     engines = {f"plan_{number}": (plan, share) for number, plan in drawn_ones}
+    engines |= {"accurate": (ACCURATE, share)}
     engines |= {"joined": (JOINED, share), "full": (FULL, share)}  # dearest: last
     names = asked.only or list(engines)
     if not {*names} <= {*engines}:

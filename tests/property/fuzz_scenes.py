@@ -73,6 +73,7 @@ class Drawn(NamedTuple):
     numerics: dict[str, Any]  # those that choose an engine
     tolerance: bool
     over_relaxation: bool
+    accurate: bool = False  # whether each run asks for an accuracy, with substeps
 
     def switches(self) -> dict[str, str]:
         """Return the section `effects` that forces all of it on."""
@@ -106,7 +107,6 @@ def _closed(names: set[str], numerics: dict[str, Any]) -> tuple[str, ...]:
 NOT_DRAWN = {
     "hertz_contact": "no compliance may be beside it; see tests/physics/test_hertz_contacts.py",
     "capture_in_sweeps": "a mistake that is made on purpose, which breaks laws",
-    "error_control": "ends a run where no substep is short enough; `test_error_control.py`",
 }
 # Those whose kernels run since the engine has them, though no scene is large enough, or asks.
 FORCED = {
@@ -115,7 +115,9 @@ FORCED = {
     "problem_log": "few scenes can be written as FCLIB files: none is asked for",
     "velocity_log": "columns of states that others have",
 }
-EVERY = {effect.name for effect in EFFECTS} - {*NOT_DRAWN}
+# Laws that steps of fixed length have no part in: of the engine that is asked for an accuracy.
+ACCURACY = "error_control"
+EVERY = {effect.name for effect in EFFECTS} - {*NOT_DRAWN, ACCURACY}
 LAWS: dict[str, Any] = {
     "solver": "adaptive",
     "friction_cone": "disc",
@@ -131,6 +133,10 @@ FULL = Drawn(_closed(EVERY, LAWS), SOLIDS, LAWS, tolerance=True, over_relaxation
 # Every body may be joined: joints pass impacts on at once, so no plan has all effects in one scene.
 JOINED = FULL._replace(numerics={**LAWS, "simultaneous_impacts": "together"})
 JOINED = JOINED._replace(effects=_closed(EVERY, JOINED.numerics))
+# Asked for an accuracy: by laws of second order, of few shapes, for each step is made of substeps.
+ACCURATE = Drawn(
+    tuple(sorted((*FULL.effects, ACCURACY))), ("sphere", "box"), LAWS, True, False, accurate=True
+)
 
 
 def plan_of(draw: Draw) -> Drawn:
@@ -285,8 +291,13 @@ class _Pen(Draw):
         # A gain excludes impacts in order and springs of contacts: it is idle beside them.
         excluded = {"impact_order", "contact_spring"} & {*plan.effects}
         gains = not excluded and self.has("stabilisation")
+        substeps: dict[str, Any] = {}
+        if plan.accurate:
+            shortest = 1.0 / (rate * 2.0 ** self.integer(3, 9))
+            substeps = {"accuracy": self.power(-4.0, -0.05), "smallest_timestep": shortest}
         return {
             **plan.numerics,
+            **substeps,
             "timestep": f"1/{rate}",
             "sweeps": self.integer(1, 60),
             "over_relaxation": 0.5 if plan.over_relaxation and relaxed == 1.0 else relaxed,

@@ -11,6 +11,7 @@ others together half of one: every night twelve times as many are drawn.
 from __future__ import annotations
 
 import os
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ import numpy as np
 import pytest
 from fuzz import HEADING, Kept, drawn, drawn_plans, finds, first_config, fuzz, summarised
 from fuzz_laws import broken, loaded, run, text_of
-from fuzz_scenes import EVERY, FORCED, FULL, JOINED, NOT_DRAWN, SOLIDS, Drawn, found_once
+from fuzz_scenes import ACCURATE, EVERY, FORCED, FULL, JOINED, NOT_DRAWN, SOLIDS, Drawn, found_once
 from idle import compile_together
 
 from lavendersim.engine.collide import SHAPE_PAIRS
@@ -77,13 +78,24 @@ def test_drawn_engines_differ_in_what_they_leave_out() -> None:
 def test_every_effect_is_drawn_or_said_not_to_be() -> None:
     """An effect is drawn where some scene requires it, whatever is forced on."""
     required: set[str] = set()
-    for plan in (FULL, JOINED, *drawn_plans(8)):
+    for plan in (FULL, JOINED, ACCURATE, *drawn_plans(8)):
         for number in range(100 if plan in (FULL, JOINED) else 10):
             tree = drawn(plan, "drawn", 0, number) | {"effects": {}}
             required |= {*loaded(tree)[1].effects}
     assert not required & {*NOT_DRAWN, *FORCED}
     assert required | {*NOT_DRAWN, *FORCED} == {effect.name for effect in EFFECTS}
     assert {*FORCED} <= {*FULL.effects}
+
+
+def test_each_run_of_the_accurate_engine_asks_for_an_accuracy() -> None:
+    trees = [drawn(ACCURATE, "accurate", 0, number) for number in range(20)]
+    engines = {loaded(tree)[1] for tree in trees}
+    assert len(engines) == 1
+    assert engines.pop().has("error_control")
+    for tree in trees:
+        numerics = tree["numerics"]
+        assert 0.0 < numerics["accuracy"] < 1.0
+        assert numerics["smallest_timestep"] <= float(Fraction(numerics["timestep"])) / 8.0
 
 
 def test_a_cavity_changes_no_draw_of_the_bodies_inside(monkeypatch: pytest.MonkeyPatch) -> None:

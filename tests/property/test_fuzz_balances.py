@@ -7,7 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fuzz_balances import TAKEN_BACK, State, Steps, _gap, _momentum, _penetration
+from fuzz_balances import TAKEN_BACK, _brought_together, _momentum
+from fuzz_gaps import NEAR, deeper_than_moved, pushes_across_gaps
+from fuzz_steps import State, Steps
+
+from lavendersim.engine.contact_spring_law import FLATTEST
 
 DT, MASS = 0.01, 2.0
 STILL = {"step": 2, "body_a": 0, "body_b": 1, "impulse_n": 0.0}
@@ -49,13 +53,13 @@ def cell_of(cone: str = "disc", warm_start: bool = False, slop: float = 0.0) -> 
 def test_a_stop_that_its_joint_tears_past_is_no_overlap(joint: int) -> None:
     """Its depth is an arm, as long as the axis is far, times the turn that is missing."""
     steps = steps_of([STILL | {"joint": joint, "penetration": 5.0}])
-    assert bool(_penetration(cell_of(), logged(0.0, 5.0), steps)) == (joint == 0)
+    assert bool(deeper_than_moved(cell_of(), logged(0.0, 5.0), steps)) == (joint == 0)
 
 
 def test_what_is_passed_over_as_flush_is_as_deep_as_ten_slops_when_it_is_met() -> None:
     steps = steps_of([STILL | {"penetration": 0.1}])
     for deep, seen in ((0.0999, False), (0.1001, True)):
-        assert bool(_penetration(cell_of(slop=0.01), logged(0.0, deep), steps)) == seen
+        assert bool(deeper_than_moved(cell_of(slop=0.01), logged(0.0, deep), steps)) == seen
 
 
 def test_what_is_thrown_back_within_a_step_has_been_farther_than_its_ends_say() -> None:
@@ -63,7 +67,7 @@ def test_what_is_thrown_back_within_a_step_has_been_farther_than_its_ends_say() 
     row = {"step": 1, "body_a": 0, "body_b": 1, "nz": 1.0, "impulse_n": MASS, "penetration": 0.0}
     steps = steps_of([row])
     for parts, deep, seen in ((1, 0.1 * DT, True), (2, 3.9 * DT, False), (2, 4.1 * DT, True)):
-        assert bool(_penetration(cell_of(), logged(0.0, deep, parts), steps)) == seen
+        assert bool(deeper_than_moved(cell_of(), logged(0.0, deep, parts), steps)) == seen
 
 
 @pytest.mark.parametrize("cone", ["disc", "convex"])
@@ -75,7 +79,7 @@ def test_what_slides_under_the_convex_cone_is_pushed_ahead(cone: str, grain: boo
     if grain:  # along t2 alone, by 0.125
         row |= {"friction": 0.0, "friction_11": 0.0, "friction_12": 0.0, "friction_22": 0.125}
     for separation, seen in ((0.49 * DT, cone == "disc"), (0.51 * DT, True)):
-        found = _gap(cell_of(cone), steps_of([row | {"separation": separation}]))
+        found = pushes_across_gaps(cell_of(cone), steps_of([row | {"separation": separation}]))
         assert bool(found) == seen
 
 
@@ -87,3 +91,49 @@ def test_a_warm_start_rounds_by_the_impulses_of_the_step_before(warm_start: bool
     steps = steps_of([row], v=np.array([-50.0, 0.0, left]))
     found = _momentum(cell_of(warm_start=warm_start), SimpleNamespace(step=np.zeros(3)), steps)
     assert bool(found) == (not warm_start)
+
+
+def test_a_torque_that_a_contact_holds_would_have_brought_its_body_near() -> None:
+    """3 N m by 2 N s^2/m/(0.5 kg m^2): 6 m/s^2 dt of a surface 0.5 m from the centre, for dt."""
+    row = {"step": 1, "body_a": 0, "body_b": 1, "impulse_n": 1.0, "inverse_effective_mass": 1.0,
+           "residual": 0.0}  # fmt: skip
+    steps = steps_of([row])
+    bound = np.zeros_like(steps.before.bound)
+    bound[:, 1] = 0.5
+    steps = steps._replace(before=steps.before._replace(bound=bound))
+    twist = SimpleNamespace(body="ball", torque=(0.0, 0.0, 3.0), force=(0.0, 0.0, 0.0), factor=None)
+    allowed = 0.5 * 3.0 / 0.5 * DT * DT + NEAR * 0.5
+    for forces, share, seen in (([], 1.0, True), ([twist], 0.99, False), ([twist], 1.01, True)):
+        cell = cell_of()
+        cell.duration, cell.scene.forces = 1.0, forces
+        cell.scene.bodies["ball"].mass, cell.scene.bodies["ball"].inertia = MASS, (0.5, 1.0, 1.0)
+        twist.constant_at_centre = True
+        steps.contact["impulse_n"] = 1.0
+        rows = steps._replace(contact=with_separation(steps.contact, share * allowed))
+        assert bool(pushes_across_gaps(cell, rows)) == seen
+
+
+def with_separation(contact: np.ndarray, separation: float) -> np.ndarray:
+    wide = np.zeros(contact.shape, [*contact.dtype.descr, ("separation", "f8")])
+    for name in contact.dtype.names:
+        wide[name] = contact[name]
+    wide["separation"] = separation
+    return wide
+
+
+@pytest.mark.parametrize(("share", "seen"), [(0.9, True), (1.0, False)])
+def test_the_flattest_tangent_of_an_open_spring_is_no_push(share: float, seen: bool) -> None:
+    row = {"step": 1, "body_a": 0, "body_b": 1, "impulse_n": 1.0, "inverse_effective_mass": 2.0,
+           "residual": 0.0, "separation": 1.0, "gamma": share * 2.0 / FLATTEST}  # fmt: skip
+    assert bool(pushes_across_gaps(cell_of(), steps_of([row]))) == seen
+
+
+def test_what_brings_ends_together_moves_and_turns_by_four_times_their_distance() -> None:
+    """0.1 m apart: 4 x 0.1 m of 2 kg, against 10 m/s^2, and of 3 rad/s by 0.5 m."""
+    row = {"step": 1, "body_a": 0, "body_b": 1, "joint": 1, "separation": 0.1}
+    steps = steps_of([row, row | {"joint": 0}])
+    before = steps.before
+    before.spin[:, 1] = (0.0, 3.0, 0.0)
+    bound = np.where(before.mass > 0.0, 0.5, 0.0)
+    given = _brought_together(steps._replace(before=before._replace(bound=bound)), 10.0)
+    assert given.tolist() == pytest.approx([0.4 * MASS * (10.0 + 0.5 * 9.0), 0.0])

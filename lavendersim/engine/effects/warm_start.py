@@ -4,6 +4,7 @@ A contact persists when the cache holds a point of the same pair within `cache_d
 from body A, whose normal still points the same way. The same feature is preferred; without one the
 nearest unclaimed point serves. Rows of both lists are ordered by pair, so one walk matches all.
 A row of a normal alone begins without tangential impulse and torque: an event took its friction.
+So does one whose coefficient of torsional or rolling friction is 0: no sweep changes that torque.
 
 Where impacts part a step, a part may be of any length: what a solve leaves (1e-9 m/s, times a mass)
 does not shrink with it, and would be scaled to the next. Brief parts leave the cache as it is.
@@ -95,10 +96,10 @@ def make(spec):
                             contact.lambda_2 *= contact.ease_2
                     # What begins without a push begins without torque: neither is applied.
                     if torsional:
-                        if contact.lambda_n > 0.0:
+                        if contact.lambda_n > 0.0 and contact.torsional > 0.0:
                             contact.psi_n = share * cache[chosen].psi_n
                     if rolling:
-                        if contact.lambda_n > 0.0:
+                        if contact.lambda_n > 0.0 and contact.rolling > 0.0:
                             old = cache[chosen]
                             x, y, z = share * old.psi_x, share * old.psi_y, share * old.psi_z
                             contact.psi_1 = contact.t1x * x + contact.t1y * y + contact.t1z * z

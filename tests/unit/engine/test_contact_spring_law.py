@@ -255,3 +255,24 @@ def test_tangents_leave_rigid_rows_alone_and_a_nan_shows() -> None:
     contacts["spring_compliance"] = [1.0 / K, 0.0]
     missed, _ = linearise(records(contacts), 2, records(velocities), params)
     assert np.isnan(missed)
+
+
+@pytest.mark.parametrize("handed", [1e-160, 5e-324, 1e-140])
+def test_an_impulse_that_no_velocity_has_a_digit_of_is_none(handed: float) -> None:
+    """It would carry its bodies; a heavier one stays what the solver left, by k_n lambda."""
+    spec = MEAN.including("friction", "rolling_friction", "torsional_friction", "rotation")
+    contacts, velocities = np.zeros(2, contact_dtype(spec)), allocate_velocities(spec, 2)
+    contacts["b"], contacts["nz"], contacts["k_n"] = 1, 1.0, 1e-5
+    contacts["phi"], contacts["spring_compliance"] = 1.0, C
+    names = ["lambda_n", "lambda_1", "lambda_2", "psi_n", "psi_1", "psi_2"]
+    for name in names:
+        contacts[name] = handed, 0.0
+
+    def solve(system, workspace, params, counters, rows):
+        counters.sweeps, counters.not_converged = 1, 0
+
+    system = ContactSystem(records(contacts), np.zeros(2, int), 2, None, records(velocities))
+    counters, params = one_row(sweeps=0, not_converged=0), one_row(dt=DT, tolerance=1e-9)
+    interpreted(make_solve_by_tangents(spec, solve))(system, None, params, counters, None)
+    left = handed if handed > 1e-150 else 0.0
+    assert [contacts[name][0] for name in names] == [left] * 6

@@ -16,7 +16,7 @@ from interpreted import interpreted, records
 from plain_facts import one_row
 
 from lavendersim.engine import integrate
-from lavendersim.engine.integrate import AFTERWARDS, AHEAD, ALWAYS, IMPACT, LASTING
+from lavendersim.engine.integrate import AFTERWARDS, AHEAD, ALWAYS, IMPACT, LASTING, UNFOUND
 from lavendersim.engine.record_layout import allocate_bodies, allocate_velocities, contact_dtype
 from lavendersim.engine.records import (
     MOTION,
@@ -182,6 +182,20 @@ def test_a_torque_gives_its_momentum_to_an_uneven_body_that_turns(carried: int, 
         body.moved(spec)
         # The middle of the turn is found to 1e-14 of it.
         np.testing.assert_allclose(body.inertia() @ body.spin(), momentum, atol=1e-12)
+
+
+def test_where_no_middle_is_found_an_uneven_body_wins_no_energy_by_its_turn(rng) -> None:
+    """It has its whole spin before the turn, which keeps energy; halves would not."""
+    for midway, changes in ((UNFOUND, 1e-12), (0, np.inf)):
+        body = Body(CENTRED, rng, (0.5, 1.0, 1.3))
+        w, spin = rng.normal(size=(2, 3)) + np.array([[5.0], [8.0]])
+        body.gives(m_w=w, w=spin, m_v=(0, 0, 0), v=(0, 0, 0))
+        body.motion["carried"], body.motion["midway"] = LASTING, midway
+        energy = spin @ body.inertia() @ spin
+        body.moved(CENTRED)
+        change = abs(body.spin() @ body.inertia() @ body.spin() / energy - 1.0)
+        assert change <= changes
+        assert midway == UNFOUND or change > 1e-6
 
 
 def test_halves_of_a_torque_are_of_second_order(rng) -> None:

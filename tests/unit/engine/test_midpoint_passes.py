@@ -21,7 +21,8 @@ from lavendersim.engine import midpoint_passes
 from lavendersim.engine.compile import chain
 from lavendersim.engine.contact import make_append_contact
 from lavendersim.engine.effects import made_by
-from lavendersim.engine.midpoint_passes import MOST_PASSES, PASSES, make_stand_up
+from lavendersim.engine.integrate import MIDDLE, UNFOUND
+from lavendersim.engine.midpoint_passes import MOST_PASSES, PASSES, make_go_back, make_stand_up
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.9])
@@ -143,7 +144,7 @@ def test_passes_end_where_the_middle_stays() -> None:
     assert 2 <= passes.calls < PASSES
     assert passes.counters.sweeps == 3 + passes.calls
     motion = passes.arrays.motion
-    assert motion["midway"].tolist() == [1, 1]
+    assert motion["midway"].tolist() == [MIDDLE, MIDDLE]
     # Bodies are left at the middle, for what looks at them there.
     assert passes.arrays.bodies["x"][1] == pytest.approx(0.5 * 0.01 * 0.8, rel=1e-3)
     assert passes.workspace.middle.poses.array.tobytes() == passes.before.tobytes()
@@ -173,6 +174,7 @@ def test_a_middle_that_is_never_found_is_counted() -> None:
     passes = Passes(wanders)
     assert PASSES < passes.calls <= MOST_PASSES + 1
     assert not passes.passed
+    assert passes.arrays.motion["midway"].tolist() == [UNFOUND, UNFOUND]
     assert passes.counters.midpoint_not_converged == 1
     assert passes.arrays.bodies.tobytes() == passes.before.tobytes()
 
@@ -215,3 +217,16 @@ def test_an_impact_has_none_either() -> None:
 
 def test_what_goes_nowhere_has_that_of_the_start() -> None:
     assert not Passes(nothing, speed=0.0).passed
+
+
+def test_contacts_go_back_with_their_bodies_to_where_the_step_begins() -> None:
+    """For what is solved there once more, as beside springs: the normal, and where the ball is."""
+    passes = Passes(push)
+    contact = passes.contact
+    assert passes.passed
+    assert contact.x == pytest.approx(0.5 * 0.01 * 0.8 * RADIUS / REACH, rel=1e-2)
+    assert contact.nx > 1e-3
+    state, poses = passes.state, passes.workspace.middle.poses
+    interpreted(make_go_back(passes.steps.spec))(state, 1, poses)
+    assert passes.arrays.bodies.tobytes() == passes.before.tobytes()
+    assert (contact.nx, contact.nz, contact.x, contact.z) == (0.0, 1.0, 0.0, RADIUS)

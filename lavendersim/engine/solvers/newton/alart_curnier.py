@@ -31,6 +31,14 @@ from .coulomb_response import (
     make_scale_transposed,
 )
 from .envelope import DOF
+from .kept_velocities import (
+    LOST,
+    OF_BEST,
+    OF_START,
+    make_keep_velocities,
+    make_put_velocities,
+    make_speed,
+)
 from .lu import make_assemble_and_factorise, solve_lu
 from .method import make_accept, make_keep, make_restore, make_set_impulse
 from .minimise import (
@@ -144,6 +152,8 @@ def make_alart_curnier(spec: Spec) -> Any:
     accept = make_accept(spec, set_impulse, make_coulomb_impulse(spec))
     restore_start = make_restore(spec, "start", set_impulse)
     restore_best = make_restore(spec, "best", set_impulse)
+    keep_velocities, put_velocities = make_keep_velocities(spec), make_put_velocities(spec)
+    speed = make_speed(spec)
 
     def alart_curnier(system, workspace, size, most, residuals, softness):
         tolerance, enough = residuals
@@ -154,17 +164,21 @@ def make_alart_curnier(spec: Spec) -> Any:
             return 0
         now = least
         keep(contacts, count)
+        keep_velocities(velocities, workspace, size, OF_BEST)
+        usual, peak = speed(contacts, count, velocities), 0.0
         cut, good, again = CUT, 0.0, False
         steps, failed = 0, 0
         while steps < most and failed < FAILURES and softness <= MOST_SOFT:
             # Taken to be at rest, contacts have no shift.
             start(contacts, count, velocities, softness, True, PLAIN)
+            keep_velocities(velocities, workspace, size, OF_START)
             exact = EXACTNESS * softness * max(least, tolerance)
             made, found = find_root(contacts, count, size, workspace, exact)
             steps += made
             kept = False
             if found:  # impulses of no root would be as large as E
                 accept(contacts, count, velocities)
+                peak = max(peak, speed(contacts, count, velocities))
                 largest, _ = residual(contacts, count, velocities)
                 kept = largest <= WORSE * least
                 if kept:
@@ -172,6 +186,7 @@ def make_alart_curnier(spec: Spec) -> Any:
                     if largest < least:
                         least = largest
                         keep(contacts, count)
+                        keep_velocities(velocities, workspace, size, OF_BEST)
                     if least <= tolerance or (least <= enough and largest > BROUGHT * before):
                         break
                     good, softness = softness, max(softness * cut, STIFFEST)
@@ -180,6 +195,8 @@ def make_alart_curnier(spec: Spec) -> Any:
                     again = False
                 else:
                     restore_start(contacts, count, velocities)
+                    if peak > LOST * usual:
+                        put_velocities(velocities, workspace, size, OF_START)
             if not kept:
                 failed += 1
                 if good == 0.0:
@@ -193,6 +210,8 @@ def make_alart_curnier(spec: Spec) -> Any:
                     softness, again = good, True
         if now > least:
             restore_best(contacts, count, velocities)
+            if peak > LOST * usual:
+                put_velocities(velocities, workspace, size, OF_BEST)
         return steps
 
     return kernel(alart_curnier, spec)

@@ -46,6 +46,7 @@ class Envelope(NamedTuple):
     shifts: FixedPoint  # (contacts,), see `shifts`
     upper: np.ndarray  # (capacity,) entries above the diagonal by columns, as `values`; see `lu`
     inside: np.ndarray  # (contacts, 6) see `inside_cones`; (0, 6) where it is not used
+    kept: np.ndarray  # (2, bodies, 6) velocities, see `kept_velocities`
     packed: Any = ()  # what sweeps between two calls work in, where they pack contacts
 
 
@@ -79,6 +80,7 @@ def allocate_envelope(
         allocate_fixed_point(contacts),
         np.zeros(upper),
         np.zeros((inside, 6)),
+        np.zeros((2, bodies, DOF)),
         packed,
     )
 

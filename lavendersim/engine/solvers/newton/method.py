@@ -28,6 +28,14 @@ from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import lay_out
+from .kept_velocities import (
+    LOST,
+    OF_BEST,
+    OF_START,
+    make_keep_velocities,
+    make_put_velocities,
+    make_speed,
+)
 from .minimise import make_assemble_mass, make_minimise
 from .response import PLAIN, SECANT, TOGETHER, make_projected_impulse, make_start
 from .rounds import (
@@ -168,6 +176,8 @@ def make_newton(spec: Spec):
     go_on, go_softer = kernel(after_kept, spec), kernel(after_failed, spec)
     back: Any = kernel(back_to, spec)
     stay, slides = kernel(after_stalled, spec), row_terms(spec).frictional
+    keep_velocities, put_velocities = make_keep_velocities(spec), make_put_velocities(spec)
+    speed = make_speed(spec)
     shift_together: Any = make_shift_together(spec)
 
     def newton(system, workspace, size, most, tolerance, sticking_guess):
@@ -181,6 +191,8 @@ def make_newton(spec: Spec):
         now, stalls = least, PLAIN
         stalled, columns = 0, NO_ROUND
         keep(contacts, count)
+        keep_velocities(velocities, workspace, size, OF_BEST)
+        usual, peak = speed(contacts, count, velocities), 0.0
         rounds = begin(STICKING if sticking_guess else SOFTEST)
         lowest = rounds.good  # softness of the round that left the least
         steps, guess_holds, went_back = 0, sticking_guess, False
@@ -193,6 +205,7 @@ def make_newton(spec: Spec):
                     columns = shift_together(contacts, count, velocities, workspace.shifts, columns)
                     stalls = TOGETHER
             start(contacts, count, velocities, softness, at_rest, stalls)
+            keep_velocities(velocities, workspace, size, OF_START)
             made, found = minimise(
                 contacts, count, size, workspace, EXACTNESS * softness * lightest * off * off
             )
@@ -200,6 +213,7 @@ def make_newton(spec: Spec):
             keeps = False
             if found:  # impulses of no minimum would be as large as E
                 accept(contacts, count, velocities)
+                peak = max(peak, speed(contacts, count, velocities))
                 largest, _ = residual(contacts, count, velocities)
                 if largest <= tolerance:
                     now = least = largest
@@ -212,9 +226,12 @@ def make_newton(spec: Spec):
                     if largest <= least:
                         least, lowest = largest, softness
                         keep(contacts, count)
+                        keep_velocities(velocities, workspace, size, OF_BEST)
                     rounds = stay(rounds) if stalled >= PATIENCE and slides else go_on(rounds)
                 else:
                     restore_start(contacts, count, velocities)
+                    if peak > LOST * usual:
+                        put_velocities(velocities, workspace, size, OF_START)
             if not keeps:
                 # What a guess of rest led to says nothing of how fast softness may fall.
                 rounds = go_softer(rounds, at_rest)
@@ -223,6 +240,8 @@ def make_newton(spec: Spec):
                         break
                     # Rounds since the least went astray: from there on they are as soft as it was.
                     restore_best(contacts, count, velocities)
+                    if peak > LOST * usual:
+                        put_velocities(velocities, workspace, size, OF_BEST)
                     now, stalls, stalled, columns = least, PLAIN, 0, NO_ROUND
                     rounds, went_back = back(rounds, lowest), True
                 if stalls == TOGETHER:  # what led to it is no guide
@@ -231,6 +250,8 @@ def make_newton(spec: Spec):
                     guess_holds = False
         if now > least:
             restore_best(contacts, count, velocities)
+            if peak > LOST * usual:
+                put_velocities(velocities, workspace, size, OF_BEST)
         return steps, guess_holds
 
     return separate(kernel(newton, spec), spec)

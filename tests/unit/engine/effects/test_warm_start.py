@@ -160,3 +160,23 @@ def test_a_pair_that_loses_its_friction_starts_without_any():
     assert after["impulse_n"] > 0.0
     assert [after[column] for column in columns] == [0.0, 0.0, 0.0]
     assert bench.velocity[1, 0] == speed
+
+
+@pytest.mark.parametrize("taken", ["torsional_friction", "rolling_friction"])
+def test_a_pair_that_loses_one_friction_of_turning_starts_without_its_torque(taken):
+    """No sweep changes a torque whose coefficient is 0: what is handed on would act for ever.
+
+    Runs 221 of `python tests/property/fuzz.py --plans 18 --seed 11 --only plan_1`, 6 and 93 of
+    `plan_2`.
+    """
+    column = {"torsional_friction": "angular_impulse_n", "rolling_friction": "angular_impulse_t1"}
+    spun = {"velocity": (1.0, 0.0, 0.0), "angular_velocity": (1.0, 3.0, 2.0)}
+    surface = dict.fromkeys(("friction", *column), 0.1)
+    bodies = {"floor": plane(**surface), "ball": sphere(0.1, (0.0, 0.0, 0.1), **surface, **spun)}
+    bench = Bench(resolved(bodies, GRAVITY))
+    began = bench.run(1).contact[0]
+    bench.engine.state.pairs[taken] = 0.0
+    after = bench.run(1).contact[0]
+    for kind, name in column.items():
+        assert abs(began[name]) > 1e-5
+        assert (after[name] == 0.0) == (kind == taken)
