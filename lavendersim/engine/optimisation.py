@@ -19,7 +19,7 @@ from numba.core import config
 
 # LLVM's first level takes two thirds of the time of its third, and kernels are as fast.
 LEVEL: Final = 1
-# Lines of LLVM's text of a function that is merged wherever it is called. A stack of six takes 7.1 us
+# Lines of LLVM text of a function that is merged wherever it is called. A stack of six takes 7.1 us
 # a step with 60, 6.0 with 200, and a pile of balls 3 % less with 260 than with 200; from 320 on
 # modules take twice the time, for nothing.
 SHORT: Final = 260

@@ -29,6 +29,9 @@ from fuzz_draws import Draw
 from fuzz_laws import ENDLESS, judged, loaded, run, text_of
 from fuzz_scenes import ACCURATE, FULL, JOINED, Drawn, config_of, plan_of
 
+# One run in ten of some plans takes seconds, nine tenths of the time of all: it is judged over as
+# many of its steps as take that long, one by one, by every law. Tests judge runs whole.
+ENOUGH = 0.3  # [s] of the processor
 CHUNK = 100  # runs of a line: what an interruption loses at most
 LAWS = ("ended", "diverged", "push", "momentum", "gap", "penetration", "energy", "units")
 HEADING = ("engine", "seed", "first", "runs", "finds", "seconds", *LAWS)
@@ -141,7 +144,7 @@ def fuzz(kept: Kept, plan: Drawn, count: int) -> None:
             return
         kept.running.write_text(str(number))
         tree = drawn(plan, kept.engine, kept.seed, number)
-        result = judged(tree, shared)
+        result = judged(tree, shared, ENOUGH)
         laws.update(result.laws)
         if result.broken:
             kept.keep(number, Find(tree, result.broken))

@@ -9,6 +9,7 @@ what `fuzz_balances` says of each step.
 
 from __future__ import annotations
 
+import math
 import time
 import warnings
 from concurrent.futures import ThreadPoolExecutor, wait
@@ -38,9 +39,6 @@ from lavendersim.scene.plan import plan_of_cell
 LIMIT = 120.0  # [s] of the processor
 LOOK = 1.0  # [s] between two looks at how long it took
 ENDLESS = "ends: still runs after"
-# One run in ten of some plans takes seconds, nine tenths of the time of all: it is judged over as
-# many of its steps as take that long, one by one, by every law.
-ENOUGH = 0.3  # [s] of the processor
 # The cone is kept by scaling with a rounded length: some units in the last place.
 ROUNDING = 1e-12
 # Components that small are squared below the least number: their length is known to so much.
@@ -82,10 +80,12 @@ def loaded(tree: dict[str, Any]) -> tuple[Experiment, Spec]:
     return experiment, plan_of_cell(experiment.cells()[0]).spec
 
 
-def run(config: CellConfig, spec: Spec, steps: int, by_step: bool = False) -> Ended:
+def run(
+    config: CellConfig, spec: Spec, steps: int, by_step: bool = False, enough: float = math.inf
+) -> Ended:
     """Run a cell to its end, as a cell of an experiment is run; or one step at a time.
 
-    Step by step it ends after ENOUGH, too, with as many steps as it has done.
+    enough: [s] of the processor, after which it ends step by step, too.
     """
     scene = build(config, spec)
     engine = scene.engine(spec, BLOCK)
@@ -107,7 +107,7 @@ def run(config: CellConfig, spec: Spec, steps: int, by_step: bool = False) -> En
         blocks.append(engine.take_rows())
         if status == DIVERGED or (status == RUNNING and done >= steps):
             break
-        if by_step and before is None and time.process_time() - begin > ENOUGH:
+        if by_step and before is None and time.process_time() - begin > enough:
             break
     rows = Rows(*(joined(columns) for columns in zip(*blocks, strict=True)))
     said = divergence(scene, engine) if status == DIVERGED else ""
@@ -126,11 +126,15 @@ def broken(tree: dict[str, Any], shared: Spec | None = None) -> list[str]:
     return judged(tree, shared).broken
 
 
-def judged(tree: dict[str, Any], shared: Spec | None = None) -> Judged:
-    """Return what a config breaks, by name and number. shared: the engine it must require."""
+def judged(tree: dict[str, Any], shared: Spec | None = None, enough: float = math.inf) -> Judged:
+    """Return what a config breaks, by name and number.
+
+    shared: the engine it must require. enough: [s] of the processor; of a run that takes longer,
+    the steps are judged that are done by then.
+    """
     pool = ThreadPoolExecutor(1)
     try:
-        begin, judging = time.process_time(), pool.submit(_judged, tree, shared)
+        begin, judging = time.process_time(), pool.submit(_judged, tree, shared, enough)
         while not wait([judging], LOOK).done:  # kernels hold no lock of Python's
             if time.process_time() - begin > LIMIT:
                 return Judged([f"{ENDLESS} {LIMIT:g} s"], [])
@@ -141,13 +145,13 @@ def judged(tree: dict[str, Any], shared: Spec | None = None) -> Judged:
         pool.shutdown(wait=False)
 
 
-def _judged(tree: dict[str, Any], shared: Spec | None) -> Judged:
+def _judged(tree: dict[str, Any], shared: Spec | None, enough: float) -> Judged:
     experiment, spec = loaded(tree)
     if shared is not None and spec != shared:
         return Judged(["plan: it requires another engine than its plan's"], [])
     cell = experiment.cells()[0]
     config = cell.config
-    other = run(config, spec, config.steps, by_step=True)
+    other = run(config, spec, config.steps, by_step=True, enough=enough)
     steps = config.steps if other.said else other.steps
     one = run(config, spec, steps)
     found = [

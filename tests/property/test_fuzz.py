@@ -160,9 +160,9 @@ def test_a_step_that_fills_the_log_is_judged_from_where_it_began() -> None:
 
 @pytest.mark.parametrize("law", BREAKS)
 def test_each_law_bites(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    def bent(*arguments: Any, by_step: bool = False) -> Any:
-        ended = run(*arguments, by_step=by_step)
-        if by_step or law != "equal runs":
+    def bent(*arguments: Any, **named: Any) -> Any:
+        ended = run(*arguments, **named)
+        if named or law != "equal runs":
             BREAKS[law](ended.rows)
         return ended
 
@@ -172,8 +172,8 @@ def test_each_law_bites(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_push_across_a_gap_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    def bent(*arguments: Any, by_step: bool = False) -> Any:
-        ended = run(*arguments, by_step=by_step)
+    def bent(*arguments: Any, **named: Any) -> Any:
+        ended = run(*arguments, **named)
         ended.rows.contact["separation"] += 1.0
         return ended
 
@@ -187,8 +187,8 @@ def test_friction_beyond_its_ellipse_is_seen(monkeypatch: pytest.MonkeyPatch) ->
     ball = tree["scene"]["bodies"]["ball"]
     ball["grain"], ball["surface"] = [1.0, 1.0, 0.0], {"friction": 0.5, "across_grain": 0.5}
 
-    def bent(*arguments: Any, by_step: bool = False) -> Any:
-        ended = run(*arguments, by_step=by_step)
+    def bent(*arguments: Any, **named: Any) -> Any:
+        ended = run(*arguments, **named)
         ended.rows.contact["friction_11"] *= 0.9
         ended.rows.contact["friction_22"] *= 0.9
         return ended
@@ -211,8 +211,8 @@ def test_runs_go_on_behind_those_that_are_finished(tmp_path: Path) -> None:
 def test_what_is_removed_neither_moves_nor_touches(monkeypatch: pytest.MonkeyPatch) -> None:
     tree = _fall() | {"events": [{"at": 0.05, "body": "ball", "remove": True}]}
 
-    def bent(*arguments: Any, by_step: bool = False) -> Any:
-        ended = run(*arguments, by_step=by_step)
+    def bent(*arguments: Any, **named: Any) -> Any:
+        ended = run(*arguments, **named)
         ended.rows.pose[20:, 0] += 1.0
         return ended
 
@@ -230,8 +230,8 @@ def test_what_is_kinematic_keeps_its_velocity(monkeypatch: pytest.MonkeyPatch) -
     }  # fmt: skip
     assert broken(tree) == []
 
-    def bent(*arguments: Any, by_step: bool = False) -> Any:
-        ended = run(*arguments, by_step=by_step)
+    def bent(*arguments: Any, **named: Any) -> Any:
+        ended = run(*arguments, **named)
         ended.rows.pose[3, 2, 11] += 1e-9
         return ended
 
