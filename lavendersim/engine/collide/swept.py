@@ -31,7 +31,7 @@ from typing import NamedTuple
 
 from ..compile import inner, kernel
 from ..effects.fast_bodies import FAST
-from ..records import BOWL, DRUM, PLANE, ROPE_END, TOUCHING
+from ..records import BOWL, DRUM, MESH, PLANE, ROPE_END, TOUCHING
 from ..spec import Spec
 from ..vectors import Vec3, dot, plus_scaled, position
 from .convex.separation import make_separation
@@ -40,7 +40,7 @@ from .manifold.point import copy_point, manifold_normal, place, put_manifold_nor
 from .pairs.convex import NEAREST
 from .records import put_position
 from .shape_kernels import make_radius
-from .shapes import has_cavity
+from .shapes import has_cavity, has_mesh
 
 ANY_MARGIN = 1e100  # [m]
 # Newton's steps: a few for an impact; a graze halves what is left in each, and 1e-9 of 1 m is 30.
@@ -63,15 +63,18 @@ def make_is_fast(spec: Spec):
     """Return `kernel(a, b, d)`: whether the displacement d relative to each other exceeds FAST R.
 
     Never with a plane: its normal is the same from everywhere; nor in a cavity, whose distance is
-    no convex function of the way; nor the ends of ropes and joints.
+    no convex function of the way, or to a mesh; nor the ends of ropes and joints.
     """
-    ends, cavities = spec.connects, has_cavity(spec)
+    ends, cavities, meshes = spec.connects, has_cavity(spec), has_mesh(spec)
 
     def is_fast(a, b, d):
         if a.shape == PLANE or b.shape == PLANE:
             return False
         if cavities:
             if a.shape == BOWL or a.shape == DRUM:
+                return False
+        if meshes:
+            if a.shape == MESH:
                 return False
         if ends:
             if a.shape == ROPE_END:
