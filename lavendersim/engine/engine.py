@@ -119,9 +119,7 @@ class Engine:
         self.state = memory.allocate_state(
             spec, bodies, velocities, pairs, links, capacity, drives=drives, triggers=triggers
         )
-        self.workspace = memory.allocate_workspace(
-            spec, self.state, hulls, templates, meshes
-        )
+        self.workspace = memory.allocate_workspace(spec, self.state, hulls, templates, meshes)
         self.log = self._allocate_log()
         # Looking up the types of forty arrays costs 6 us a call, and 1 ms for the first of an
         # engine; they stay what they are. Of what is allocated here, they follow from the spec and

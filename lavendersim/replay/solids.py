@@ -9,7 +9,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import rerun as rr
 
-from lavendersim.cell import Box, Capsule, CellHull, Convex, Cylinder, Ellipsoid, Sphere
+from lavendersim.cell import (
+    Box,
+    Capsule,
+    CellHull,
+    CellMesh,
+    Convex,
+    Cylinder,
+    Ellipsoid,
+    Sphere,
+)
 from lavendersim.geometry.convex_hull import Polyhedron, convex_hull
 from lavendersim.geometry.rotations import rotated
 from lavendersim.geometry.shapes import Piece
@@ -101,8 +110,21 @@ def _polyhedra(
             edges.append(points[[*loop, loop[0]]])
             fan = pairwise(loop[1:])
             triangles += [(first + loop[0], first + one, first + two) for one, two in fan]
+    return _faces(np.concatenate(corners), triangles, edges, look)
+
+
+def surface(mesh: CellMesh, look: BodyLook) -> list[Any]:
+    """Return the triangles of a surface, and their sides as lines."""
+    points = np.array(mesh.vertices, float)
+    loops = [points[[*triangle, triangle[0]]] for triangle in mesh.triangles]
+    return _faces(points, list(mesh.triangles), loops, look)
+
+
+def _faces(
+    corners: Vector, triangles: list[tuple[int, int, int]], edges: list[Vector], look: BodyLook
+) -> list[Any]:
     # Every triangle has corners of its own, or faces would be shaded as if they were round.
-    flat = np.concatenate(corners)[np.array(triangles).ravel()]
+    flat = corners[np.array(triangles).ravel()]
     alpha = 255 if look.solid else VEIL
     mesh = rr.Mesh3D(
         vertex_positions=flat,

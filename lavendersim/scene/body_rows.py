@@ -93,9 +93,7 @@ def body_table(
     return bodies, hull_geometry(polyhedra), _with_meshes(spec, rows, bodies)
 
 
-def _with_meshes(
-    spec: Spec, rows: Sequence[Collider], bodies: np.ndarray
-) -> MeshTables | None:
+def _with_meshes(spec: Spec, rows: Sequence[Collider], bodies: np.ndarray) -> MeshTables | None:
     """Return the tables of meshes that something may touch, and write where each stands there."""
     if not has_mesh(spec):
         return None

@@ -38,9 +38,9 @@ from ...vectors import (
 )
 from ..mesh_tables import CONCAVE, CONVEX
 from ..records import POINT, put_position
-from ..shape_kernels import make_feature, make_half_extents, make_radius, make_support
+from ..shape_kernels import make_feature, make_half_extents, make_radius
 from .own_normals import put_point_normal
-from .patch import contact_patch, frame_along
+from .patch import FEATURE_BITS, LINE_BITS, contact_patch, frame_along
 from .point import (
     LEFT_OUT,
     WHOLE,
@@ -54,10 +54,15 @@ from .point import (
 # Names of points: of what, its row of the table, and the name that the body's part has there.
 FACE, SECOND_FACE, EDGE, CORNER = 1 << 61, 1 << 60, 1 << 59, 3 << 60
 NAME_BITS = 32
+EDGE_BITS = FEATURE_BITS + 2 * LINE_BITS  # below the name of an edge
 # A normal is across an edge where the sine between is less, else one at its end [-].
 ACROSS = 1e-6
 # And is none of a cone where it is outside by more [-].
 OUTSIDE = 1e-9
+# Cosine to a face's normal from which a normal is the face's [-].
+ALONG = 1.0 - 1e-12
+# How much deeper what lies across an edge may be than the edge itself, in the bounding radius [-].
+LEVEL = 1e-3
 # How far from a point of B, in its bounding radius, faces are looked for that it may be inside [-].
 NEAR = 0.05
 KEPT, LEFT = 0, 1  # rows of `MeshTables.counts`
@@ -147,10 +152,10 @@ def put_left_out(tables, point, n, feature):
 @inner
 def has_name(tables, feature):
     """Whether a point of this name is there."""
+    found = False
     for k in range(tables.counts[KEPT]):
-        if tables.points[k].feature == feature:
-            return True
-    return False
+        found = found or tables.points[k].feature == feature
+    return found
 
 
 def make_put_face(spec: Spec, touch_plane: Any) -> Any:
@@ -196,33 +201,32 @@ def make_put_face(spec: Spec, touch_plane: Any) -> Any:
 
 
 def make_put_crossing(spec: Spec) -> Any:
-    """Return `kernel(edge, body, n, side, margin, scratch) -> least phi` along a face's normal n.
+    """Return `kernel(edge, body, n, name, least, margin, scratch)` along the normal n of its face.
 
-    Points where what looks at the face lies across its edge; edge: its row as a segment.
+    Points where what looks at the face lies across its edge; edge: its row as a segment. least:
+    what is deeper lies beside the edge, not over it [m].
     """
     feature, radius = make_feature(spec), make_radius(spec)
 
-    def put_crossing(edge, body, n, side, margin, scratch):
-        tables, rows, least = scratch.meshes, scratch.polygon, 1e300
+    def put_crossing(edge, body, n, name, least, margin, scratch):
+        tables, rows = scratch.meshes, scratch.polygon
         offset = minus(position(body), position(edge))
         if not dot(n, offset) > 0.0:
-            return least
+            return
         origin = Vec3(0.0, 0.0, 0.0)
         of_b = feature(body, offset, negative(n), scratch.hulls, scratch.outline_b)
         if of_b.kind == POINT:
-            return least
+            return
         of_a = feature(edge, origin, n, scratch.hulls, scratch.outline_a)
         frame = frame_along(n)
         start, total = contact_patch(of_a, of_b, 0.0, radius(body), frame, scratch)
         for k in range(start, start + total):
             row = rows[k]
-            if row.phi <= margin:
-                least = min(least, row.phi)
+            if least <= row.phi <= margin:
                 p = plus_scaled(position(edge), row.x, frame.t1)
                 p = plus_scaled(plus_scaled(p, row.y, frame.t2), row.z, n)
                 put_position(row, p)
-                put(tables, row, n, row.feature | (SECOND_FACE if side else EDGE))
-        return least
+                put(tables, row, n, row.feature | name)
 
     return kernel(put_crossing, spec)
 
@@ -269,36 +273,37 @@ def make_put_edge(spec: Spec, touch_edge: Any, pointed: bool) -> Any:
         reach = body.bound + margin
         if dot(away, away) > reach * reach:
             return
-        crossing = 1e300
-        if lies_across:
-            n1 = from_body(mesh, Vec3(edge.n1x, edge.n1y, edge.n1z))
-            crossing = put_crossing(row, body, n1, 0, margin, scratch)
-            if edge.free == 0:
-                n2 = from_body(mesh, Vec3(edge.n2x, edge.n2y, edge.n2z))
-                crossing = min(crossing, put_crossing(row, body, n2, 1, margin, scratch))
         whole = manifold.reduction[WHOLE]
         manifold.reduction[WHOLE] = 1
         found = touch_edge(row, body, margin, scratch)
         manifold.reduction[WHOLE] = whole
         if found == 0:
             return
-        n = manifold_normal(manifold)
+        n, least = manifold_normal(manifold), manifold.points[0].phi
         local = into_body(mesh, n)
         slope = dot(local, Vec3(edge.hx, edge.hy, edge.hz)) / edge.length
-        if abs(slope) <= ACROSS:
-            if not is_normal_of_edge(edge, local):
+        if abs(slope) > ACROSS:
+            number = edge.end if slope > 0.0 else edge.start
+            name = CORNER | number
+            if is_normal_of_corner(tables, tables.corners[number], local):
+                if not has_name(tables, name):
+                    put(tables, manifold.points[0], n, name)
+        elif is_normal_of_edge(edge, local):
+            n1, n2 = Vec3(edge.n1x, edge.n1y, edge.n1z), Vec3(edge.n2x, edge.n2y, edge.n2z)
+            between = dot(local, n1) < ALONG and (edge.free == 1 or dot(local, n2) < ALONG)
+            if between or not lies_across:
+                for k in range(found):
+                    part = manifold.points[k].feature & ((1 << EDGE_BITS) - 1)
+                    name = EDGE | SECOND_FACE | number << EDGE_BITS | part
+                    put(tables, manifold.points[k], n, name)
                 return
-            for k in range(found):
-                point = manifold.points[k]
-                # What touches a face as near touches it there.
-                if point.phi < crossing - TOUCHING:
-                    put(tables, point, n, EDGE | SECOND_FACE | number << 20 | k)
-            return
-        corner = edge.end if slope > 0.0 else edge.start
-        if is_normal_of_corner(tables, tables.corners[corner], local):
-            point, name = manifold.points[0], CORNER | corner
-            if point.phi < crossing - TOUCHING and not has_name(tables, name):
-                put(tables, point, n, name)
+        if lies_across:
+            least -= LEVEL * body.bound
+            n1 = from_body(mesh, Vec3(edge.n1x, edge.n1y, edge.n1z))
+            put_crossing(row, body, n1, EDGE, least, margin, scratch)
+            if edge.free == 0:
+                n2 = from_body(mesh, Vec3(edge.n2x, edge.n2y, edge.n2z))
+                put_crossing(row, body, n2, SECOND_FACE, least, margin, scratch)
 
     return kernel(put_edge, spec)
 

@@ -15,5 +15,5 @@ from . import box_plane, convex
 
 @once
 def make(spec: Spec) -> Any:
-    """Return `kernel(mesh, box, margin, scratch) -> count`, which writes `scratch.manifold`."""
+    """Return `kernel(mesh, box, margin, scratch) -> count`; it writes `scratch.manifold`."""
     return make_mesh_manifold(spec, box_plane.make(spec), convex.make(spec), pointed=False)

@@ -15,5 +15,5 @@ from . import capsule_plane, convex
 
 @once
 def make(spec: Spec) -> Any:
-    """Return `kernel(mesh, capsule, margin, scratch) -> count`, which writes `scratch.manifold`."""
+    """Return `kernel(mesh, capsule, margin, scratch) -> count`; it writes `scratch.manifold`."""
     return make_mesh_manifold(spec, capsule_plane.make(spec), convex.make(spec), pointed=False)

@@ -15,5 +15,5 @@ from . import convex, cylinder_plane
 
 @once
 def make(spec: Spec) -> Any:
-    """Return `kernel(mesh, cylinder, margin, scratch) -> count`, which writes `scratch.manifold`."""
+    """Return `kernel(mesh, cylinder, margin, scratch) -> count`; it writes `scratch.manifold`."""
     return make_mesh_manifold(spec, cylinder_plane.make(spec), convex.make(spec), pointed=False)

@@ -1,4 +1,4 @@
-"""Manifold of a mesh A and an ellipsoid B: its lowest point on faces, its nearest point on sharp edges.
+"""Manifold of a mesh A and an ellipsoid B: its points nearest to faces and to edges.
 
 `manifold.mesh_points` says which points touch; faces are planes, edges are lines.
 """
@@ -15,5 +15,7 @@ from . import ellipsoid_convex, ellipsoid_plane
 
 @once
 def make(spec: Spec) -> Any:
-    """Return `kernel(mesh, ellipsoid, margin, scratch) -> count`, which writes `scratch.manifold`."""
-    return make_mesh_manifold(spec, ellipsoid_plane.make(spec), ellipsoid_convex.make(spec), pointed=True)
+    """Return `kernel(mesh, ellipsoid, margin, scratch) -> count`; it writes `scratch.manifold`."""
+    return make_mesh_manifold(
+        spec, ellipsoid_plane.make(spec), ellipsoid_convex.make(spec), pointed=True
+    )

@@ -15,5 +15,5 @@ from . import convex, hull_plane
 
 @once
 def make(spec: Spec) -> Any:
-    """Return `kernel(mesh, hull, margin, scratch) -> count`, which writes `scratch.manifold`."""
+    """Return `kernel(mesh, hull, margin, scratch) -> count`; it writes `scratch.manifold`."""
     return make_mesh_manifold(spec, hull_plane.make(spec), convex.make(spec), pointed=False)

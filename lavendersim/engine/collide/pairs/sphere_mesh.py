@@ -38,7 +38,5 @@ def make_sphere_edge(spec: Spec) -> Any:
 
 @once
 def make(spec: Spec) -> Any:
-    """Return `kernel(mesh, sphere, margin, scratch) -> count`, which writes `scratch.manifold`."""
-    return make_mesh_manifold(
-        spec, sphere_plane.make(spec), make_sphere_edge(spec), pointed=True
-    )
+    """Return `kernel(mesh, sphere, margin, scratch) -> count`; it writes `scratch.manifold`."""
+    return make_mesh_manifold(spec, sphere_plane.make(spec), make_sphere_edge(spec), pointed=True)
