@@ -97,7 +97,7 @@ def _with_meshes(spec: Spec, rows: Sequence[Collider], bodies: np.ndarray) -> Me
     """Return the tables of meshes that something may touch, and write where each stands there."""
     if not has_mesh(spec):
         return None
-    from .mesh_tables import mesh_tables  # few scenes need it
+    from .triangle_tables import mesh_tables  # few scenes need it
 
     meshes = {id(row.shape): row.shape for row in rows if isinstance(row.shape, CellMesh)}
     tables, spans = mesh_tables(list(meshes.values()))
