@@ -1,4 +1,4 @@
-"""The engine's tables of triangle meshes, filled from cells' meshes (`engine.collide.mesh_tables`).
+"""The engine's tables of triangle meshes (`engine.collide.mesh_tables`), filled from cells.
 
 Triangles whose planes are the same but for round-off are one face; of an edge between two faces the
 straight pieces are one. The tree of boxes halves the triangles along the longest axis.
@@ -58,7 +58,11 @@ def mesh_tables(meshes: Sequence[CellMesh]) -> tuple[MeshTables, list[tuple[int,
         for name in _TABLES:
             columns[name].append(one[name])
     empty = np.zeros(0)
-    tables = {name: np.concatenate(parts) for name, parts in columns.items()}
+    # A plan that scenes share may have none in one of them.
+    tables = {
+        name: np.concatenate([np.zeros(0, dtype(_TABLES[name])), *parts])
+        for name, parts in columns.items()
+    }
     room = dict.fromkeys(("stamp", "row", "points", "normals", "counts"), empty)
     return MeshTables(**tables, **room), spans
 
