@@ -24,7 +24,7 @@ class MeshError(ValueError):
         self.triangle = triangle
 
 
-class Surface(NamedTuple):
+class TriangleSurface(NamedTuple):
     """A surface of T triangles and V vertices."""
 
     vertices: Floats  # (V, 3) [m]
@@ -39,7 +39,7 @@ def merged(vertices: Floats, triangles: Whole) -> tuple[Floats, Whole]:
     return places, rows.reshape(-1)[triangles]
 
 
-def surface_of(vertices: Floats, triangles: Whole) -> Surface:
+def surface_of(vertices: Floats, triangles: Whole) -> TriangleSurface:
     """Return a surface; raises MeshError where triangles have no area or are no surface.
 
     vertices: (V, 3) [m]; vertices at one place are one. triangles: (T, 3) rows of them.
@@ -52,7 +52,7 @@ def surface_of(vertices: Floats, triangles: Whole) -> Surface:
     thin = np.flatnonzero(~(double > LEAST_HEIGHT * longest**2))
     if len(thin):
         raise MeshError(int(thin[0]), "its corners lie on a line")
-    return Surface(places, corners, across / double[:, None], _beyond(corners))
+    return TriangleSurface(places, corners, across / double[:, None], _beyond(corners))
 
 
 def _beyond(corners: Whole) -> Whole:

@@ -28,7 +28,7 @@ from lavendersim.engine.collide.mesh_tables import (
     MeshTables,
 )
 from lavendersim.engine.records import dtype
-from lavendersim.geometry.triangle_mesh import Surface, surface_of
+from lavendersim.geometry.triangle_mesh import TriangleSurface, surface_of
 
 # Sine of the angle between two planes, and height of a corner above one in its size, that are
 # round-off [-].
@@ -120,7 +120,7 @@ def _vector(row: Any, name: str) -> np.ndarray:
     return np.array([row[f"{name}{axis}"] for axis in XYZ])
 
 
-def _faces(surface: Surface) -> _Faces:
+def _faces(surface: TriangleSurface) -> _Faces:
     """Triangles that hang together and lie in the plane of the first of them."""
     of = np.full(len(surface.triangles), NOTHING, np.int64)
     normals: list[np.ndarray] = []
@@ -148,7 +148,7 @@ def _faces(surface: Surface) -> _Faces:
     return _Faces(of, np.array(normals), np.array(offsets))
 
 
-def _sides(surface: Surface, faces: _Faces) -> np.ndarray:
+def _sides(surface: TriangleSurface, faces: _Faces) -> np.ndarray:
     """Return rows of SIDE, three of each triangle."""
     count = len(surface.triangles)
     sides = np.zeros(3 * count, dtype(SIDE))
@@ -170,7 +170,7 @@ def _sides(surface: Surface, faces: _Faces) -> np.ndarray:
     return sides
 
 
-def _corners(surface: Surface, sides: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _corners(surface: TriangleSurface, sides: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return rows of CORNER, one of each vertex, and of SPOKE."""
     count = len(surface.vertices)
     start, end = surface.triangles.reshape(-1), np.roll(surface.triangles, -1, axis=1).reshape(-1)
@@ -204,7 +204,7 @@ class _Piece(NamedTuple):
     end: int
 
 
-def _edges(surface: Surface, faces: _Faces, sides: np.ndarray) -> np.ndarray:
+def _edges(surface: TriangleSurface, faces: _Faces, sides: np.ndarray) -> np.ndarray:
     """Return rows of EDGE and write which of them sides are, each straight piece once."""
     ends = np.roll(surface.triangles, -1, axis=1).reshape(-1).tolist()
     starts = surface.triangles.reshape(-1).tolist()
@@ -272,7 +272,7 @@ def _edges(surface: Surface, faces: _Faces, sides: np.ndarray) -> np.ndarray:
     return edges
 
 
-def _nodes(surface: Surface) -> np.ndarray:
+def _nodes(surface: TriangleSurface) -> np.ndarray:
     """Return the tree of boxes in the order of a walk."""
     corners = surface.vertices[surface.triangles]
     low, high = corners.min(axis=1), corners.max(axis=1)

@@ -1,9 +1,8 @@
 """Triangles make no difference: what moves on a mesh moves as on the plane or the box it is.
 
-Sides of triangles within a face have no contacts, so on a floor of irregular triangles steps have the
-rows that they have on a plane, and the same bits. On a closed mesh of a box the points are found in
-another order and place than those of two boxes: motion agrees as far as the solver's tolerance, and
-what turns about an edge to the steps' second order.
+Sides of triangles within a face have no contacts, so on a floor of irregular triangles steps have
+the rows that they have on a plane. On a closed mesh of a box the points are found in another order
+and place than those of two boxes: motion agrees as far as the solver's tolerance.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ class Drawn(NamedTuple):
 
     def switches(self) -> dict[str, str]:
         """Return the section `effects` that forces all of it on."""
-        shapes = {*self.shapes, "plane", "bowl", "drum"} - {"compound"}
+        shapes = {*self.shapes, "plane", "bowl", "drum", "mesh"} - {"compound"}
         pairs = [name for name, pair in SHAPE_PAIRS.items() if {*pair.shapes} <= shapes]
         return dict.fromkeys((*self.effects, *pairs), "on")
 

@@ -1,8 +1,9 @@
 """Bodies beside a mesh: their contacts, and how far apart all triangles are by brute force.
 
 The distance of two polyhedra that are apart is that of a corner of one and a triangle of the other,
-or of two edges. Of a ball and a capsule the core is a point or a segment. A cylinder and an ellipsoid
-are no farther than points of their surface; that they are no nearer says what separates them.
+or of two edges. Of a ball and a capsule the core is a point or a segment. A cylinder and an
+ellipsoid are no farther than points of their surface; that they are no nearer says what separates
+them.
 """
 
 from __future__ import annotations
@@ -45,16 +46,16 @@ BOX = CellMesh(
             (2, 3, 7, 6),
             (0, 2, 6, 4),
             (1, 5, 7, 3),
-        )  # fmt: skip
+        )
         for k in (1, 2)
     ),
 )
 
 
-def terrain(rng: np.random.Generator, count: int = 4, rough: float = 0.3) -> CellMesh:
+def terrain(rng: np.random.Generator, count: int = 4, most: float = 0.3) -> CellMesh:
     """Return an uneven ground of 2 (count - 1)^2 triangles, 1.5 m wide."""
     ticks = np.linspace(-0.75, 0.75, count)
-    places = [(x, y, float(rough * rng.uniform())) for x in ticks for y in ticks]
+    places = [(x, y, float(most * rng.uniform())) for x in ticks for y in ticks]
     cells = product(range(count - 1), repeat=2)
     corners = [(i * count + j, (i + 1) * count + j) for i, j in cells]
     triangles = [t for a, c in corners for t in ((a, c, c + 1), (a, c + 1, a + 1))]
@@ -107,10 +108,10 @@ def core(kind: str, it: solids.Solid) -> tuple[np.ndarray, float]:
     angle = np.linspace(0.0, 2.0 * np.pi, FINE, endpoint=False)
     circle = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(FINE)])
     if kind == "cylinder":
-        local = np.concatenate([circle + (0, 0, end) for end in (-1, 1)])
+        local = np.concatenate([np.add(circle, (0, 0, end)) for end in (-1, 1)])
         return it.centre + (local * (half[0], half[0], half[2])) @ turn.T, 0.0
     tilts = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 41)
-    local = np.concatenate([np.cos(t) * circle[::4] + (0, 0, np.sin(t)) for t in tilts])
+    local = np.concatenate([np.add(np.cos(t) * circle[::4], (0, 0, np.sin(t))) for t in tilts])
     return it.centre + (local * half) @ turn.T, 0.0
 
 

@@ -30,7 +30,7 @@ def test_vertices_at_one_place_are_one() -> None:
         ([(0, 1, 2), (0, 3, 2)], 1, "opposite to that of triangle 0"),
     ],
 )
-def test_what_is_no_surface_is_told_by_its_triangle(triangles, row: int, sentence: str) -> None:
+def test_what_is_no_surface_is_named_by_its_triangle(triangles, row: int, sentence: str) -> None:
     with pytest.raises(MeshError, match=sentence) as caught:
         surface_of(np.array(SQUARE, float), np.array(triangles))
     assert caught.value.triangle == row

@@ -1,4 +1,4 @@
-"""Tables of meshes: faces of coplanar triangles, straight sharp edges, and a tree of all triangles."""
+"""Tables of meshes: faces of coplanar triangles, straight sharp edges, a tree of triangles."""
 
 from __future__ import annotations
 

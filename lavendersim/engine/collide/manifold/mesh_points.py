@@ -201,15 +201,15 @@ def make_put_face(spec: Spec, touch_plane: Any) -> Any:
 
 
 def make_put_crossing(spec: Spec) -> Any:
-    """Return `kernel(edge, body, n, name, least, margin, scratch)` along the normal n of its face.
+    """Return `kernel(edge, body, n, name, within, scratch)` along the normal n of its face.
 
-    Points where what looks at the face lies across its edge; edge: its row as a segment. least:
-    what is deeper lies beside the edge, not over it [m].
+    Points where what looks at the face lies across its edge; edge: its row as a segment. within:
+    the least separation and the margin [m]: what is deeper lies beside the edge, not over it.
     """
     feature, radius = make_feature(spec), make_radius(spec)
 
-    def put_crossing(edge, body, n, name, least, margin, scratch):
-        tables, rows = scratch.meshes, scratch.polygon
+    def put_crossing(edge, body, n, name, within, scratch):
+        tables, rows, (least, margin) = scratch.meshes, scratch.polygon, within
         offset = minus(position(body), position(edge))
         if not dot(n, offset) > 0.0:
             return
@@ -298,12 +298,12 @@ def make_put_edge(spec: Spec, touch_edge: Any, pointed: bool) -> Any:
                     put(tables, manifold.points[k], n, name)
                 return
         if lies_across:
-            least -= LEVEL * body.bound
+            within = least - LEVEL * body.bound, margin
             n1 = from_body(mesh, Vec3(edge.n1x, edge.n1y, edge.n1z))
-            put_crossing(row, body, n1, EDGE, least, margin, scratch)
+            put_crossing(row, body, n1, EDGE, within, scratch)
             if edge.free == 0:
                 n2 = from_body(mesh, Vec3(edge.n2x, edge.n2y, edge.n2z))
-                put_crossing(row, body, n2, SECOND_FACE, least, margin, scratch)
+                put_crossing(row, body, n2, SECOND_FACE, within, scratch)
 
     return kernel(put_edge, spec)
 

@@ -1,4 +1,4 @@
-"""Which points of a mesh touch: of a floor of triangles those of its plane, of edges the sharp ones.
+"""Which points of a mesh touch: of a floor of triangles those of its plane, of sharp edges all.
 
 A normal of a contact is that of a face, or lies between the normals of the faces around its edge.
 """
