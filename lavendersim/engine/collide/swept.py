@@ -27,15 +27,16 @@ could bring together. Parts move with the velocity of their owner's centre.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..compile import inner, kernel
 from ..effects.fast_bodies import FAST
 from ..records import BOWL, DRUM, MESH, PLANE, ROPE_END, TOUCHING
 from ..spec import Spec
-from ..vectors import Vec3, dot, plus_scaled, position
+from ..vectors import Vec3, dot, length, plus_scaled, position
 from .convex.separation import make_separation
 from .iteration_limits import needs_separation
+from .manifold.own_normals import point_normal
 from .manifold.point import copy_point, manifold_normal, place, put_manifold_normal
 from .pairs.convex import NEAREST
 from .records import put_position
@@ -63,18 +64,15 @@ def make_is_fast(spec: Spec):
     """Return `kernel(a, b, d)`: whether the displacement d relative to each other exceeds FAST R.
 
     Never with a plane: its normal is the same from everywhere; nor in a cavity, whose distance is
-    no convex function of the way, or to a mesh; nor the ends of ropes and joints.
+    no convex function of the way; nor the ends of ropes and joints.
     """
-    ends, cavities, meshes = spec.connects, has_cavity(spec), has_mesh(spec)
+    ends, cavities = spec.connects, has_cavity(spec)
 
     def is_fast(a, b, d):
         if a.shape == PLANE or b.shape == PLANE:
             return False
         if cavities:
             if a.shape == BOWL or a.shape == DRUM:
-                return False
-        if meshes:
-            if a.shape == MESH:
                 return False
         if ends:
             if a.shape == ROPE_END:
@@ -180,6 +178,46 @@ def move_to_start(point, impact, n, along):
     place(point, plus_scaled(point, 0.5 * (phi - point.phi), n), phi, point.feature)
 
 
+def make_swept_mesh(spec: Spec, manifold: Any) -> Any:
+    """Return `kernel(kind, a, b, d, margin, scratch) -> (count, t)`, see `make_swept_manifold`.
+
+    The distance to a mesh is no convex function of the way, but it changes by no more than the way:
+    t <- t + gap/|d|. Each point has its own normal. What meets nothing has the points of its start.
+    """
+    if not has_mesh(spec):
+        return None
+
+    def swept_mesh(kind, a, b, d, margin, scratch):
+        points, start, far = scratch.manifold.points, position(b), length(d)
+        t, gap = 0.0, 0.0
+        for _ in range(ADVANCES):
+            found = manifold(kind, a, b, (1.0 - t) * far + TOUCHING, scratch)
+            gap = ANY_MARGIN
+            for k in range(found):
+                gap = min(gap, points[k].phi)
+            # Written so that a NaN ends it.
+            if not (gap > TOUCHING and gap < ANY_MARGIN and t < 1.0):
+                break
+            t = min(t + (gap - 0.5 * TOUCHING) / far, 1.0)
+            put_position(b, plus_scaled(start, t, d))
+        else:
+            scratch.not_converged[0].advance += 1
+        if not gap <= TOUCHING:
+            t = 0.0
+            put_position(b, start)
+        count = manifold(kind, a, b, margin, scratch)
+        put_position(b, start)
+        if t > 0.0:
+            for k in range(count):
+                n = point_normal(scratch.manifold, k)
+                phi = points[k].phi + max(-t * dot(d, n), 0.0)
+                middle = plus_scaled(points[k], 0.5 * (phi - points[k].phi), n)
+                place(points[k], middle, phi, points[k].feature)
+        return count, t
+
+    return kernel(swept_mesh, spec)
+
+
 def make_swept_manifold(spec: Spec, manifold):
     """Return `kernel(kind, a, b, d, margin, scratch) -> (count, t)`.
 
@@ -188,8 +226,12 @@ def make_swept_manifold(spec: Spec, manifold):
     TOUCHING at least, see above. The rows of a and b are left as they were.
     """
     find_impact, gap_at = make_find_impact(spec, manifold), make_gap(spec, manifold)
+    meshes, swept_mesh = has_mesh(spec), make_swept_mesh(spec, manifold)
 
     def swept_manifold(kind, a, b, d, margin, scratch):
+        if meshes:
+            if a.shape == MESH:
+                return swept_mesh(kind, a, b, d, margin, scratch)
         points, normal = scratch.manifold.points, scratch.manifold.normal
         start = position(b)
         impact = find_impact(kind, a, b, d, scratch)

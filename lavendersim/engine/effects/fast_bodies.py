@@ -27,7 +27,7 @@ SAFETY = 1.5
 # A floor is across gravity when the cosine between them is 1 to so much [-].
 LEVEL = 1e-9
 # Where a step leads into these is seen from where it begins.
-UNSWEPT = CAVITIES | {"plane", "mesh"}
+UNSWEPT = CAVITIES | {"plane"}
 
 
 def decide(facts: Facts) -> Decision:
