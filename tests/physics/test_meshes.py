@@ -58,6 +58,26 @@ ON_SLAB = {
 }
 
 
+# A ridge 0.5 m high across a floor, and balls that pass 2 cm over it, or dive behind it: 0.2 to
+# 1.8 m a step.
+RIDGE = mesh(
+    [(x, y, z) for y in (-2, 2) for x, z in ((-3, 0), (-0.5, 0), (0, 0.5), (0.5, 0), (40, 0))],
+    [t for k in range(4) for t in ((k, k + 1, k + 6), (k, k + 6, k + 5))],
+)
+FAST = {
+    "passes at 50 m/s": ((-1.7, 0.1, 0.62), (50.0, 0.0, 0.0)),
+    "passes at 300 m/s": ((-1.7, 0.1, 0.62), (300.0, 0.0, 0.0)),
+    "dives at 50 m/s": ((-1.0, 0.1, 1.7), (50.0, 0.0, -50.0)),
+    "dives at 300 m/s": ((-1.0, 0.1, 1.7), (300.0, 0.0, -300.0)),
+}
+
+
+def fast(at: tuple[float, ...], velocity: tuple[float, ...]) -> str:
+    ridge = f"{{shape: {RIDGE}, position: [0, 0, 0], surface: one}}"
+    it = f"{{shape: {BALL}, mass: 1.0, position: {flow(at)}, velocity: {flow(velocity)}, "
+    return config({"floor": ridge, "it": it + "surface: one}"}, RATE, 0.1, "friction: 0")
+
+
 def scene(floor: str, it: tuple[str, tuple[float, ...], str], duration: float) -> str:
     shape, at, rest = it
     still = {PLANE: "", SLAB: ", position: [0, 0, -0.1], fixed: true"}.get(floor)
@@ -80,7 +100,7 @@ def runs() -> dict[str, States]:
     for name, it in ON_SLAB.items():
         texts[f"{name}: box"] = scene(SLAB, it, 0.5)
         texts[f"{name}: mesh"] = scene(slab(), it, 0.5)
-    return run_scenes(texts)
+    return run_scenes(texts | {name: fast(*it) for name, it in FAST.items()})
 
 
 @pytest.mark.parametrize("name", ON_FLOOR)
@@ -106,3 +126,17 @@ def test_a_closed_mesh_of_a_box_moves_bodies_as_the_box(runs, name: str) -> None
 def test_what_tips_and_what_rolls_has_left_the_slab(runs) -> None:
     for name in ("tips", "ball"):
         assert runs[f"{name}: mesh"].of("it")[0][-1, 2] < 0.05
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_a_fast_ball_meets_what_is_on_its_way_and_nothing_else(runs, name: str) -> None:
+    """What passes flies straight on; what dives slides on along the floor behind the ridge."""
+    place, velocity, _ = runs[name].of("it")
+    at, thrown = (np.array(one) for one in FAST[name])
+    times = runs[name].time[:, None]
+    straight = at + times * thrown
+    if "dives" in name:
+        straight[:, 2] = np.maximum(straight[:, 2], 0.1)
+        assert velocity[-1] == pytest.approx(thrown * (1.0, 1.0, 0.0), abs=1e-9)
+    # What touches may lie within the slop, 1e-5 m, of the surface.
+    np.testing.assert_allclose(place, straight, rtol=0.0, atol=1e-5)
