@@ -27,6 +27,7 @@ from lavendersim.replay.shapes import XYZW, Vector
 # Of the faces of a movable hull: forces act at surfaces and point into bodies, so they must be seen
 # through them.
 VEIL = 60
+LINE_SHADE = 0.5  # sides of triangles are as bright as this share of their faces
 
 
 class BodyLook(NamedTuple):
@@ -117,11 +118,16 @@ def surface(mesh: CellMesh, look: BodyLook) -> list[Any]:
     """Return the triangles of a surface, and their sides as lines."""
     points = np.array(mesh.vertices, float)
     loops = [points[[*triangle, triangle[0]]] for triangle in mesh.triangles]
-    return _faces(points, list(mesh.triangles), loops, look)
+    red, green, blue = (int(LINE_SHADE * part) for part in look.colour)
+    return _faces(points, list(mesh.triangles), loops, look, (red, green, blue))
 
 
 def _faces(
-    corners: Vector, triangles: list[tuple[int, int, int]], edges: list[Vector], look: BodyLook
+    corners: Vector,
+    triangles: list[tuple[int, int, int]],
+    edges: list[Vector],
+    look: BodyLook,
+    line_colour: tuple[int, int, int] | None = None,
 ) -> list[Any]:
     # Every triangle has corners of its own, or faces would be shaded as if they were round.
     flat = corners[np.array(triangles).ravel()]
@@ -133,7 +139,7 @@ def _faces(
     )
     lines = rr.LineStrips3D(
         edges,
-        colors=[look.colour],
+        colors=[line_colour or look.colour],
         radii=rr.Radius.ui_points(1.5),
         labels=[look.label],
         show_labels=look.labelled,
