@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lavendersim.geometry.rotations import Floats
 
@@ -39,7 +40,7 @@ def merged(vertices: Floats, triangles: Whole) -> tuple[Floats, Whole]:
     return places, rows.reshape(-1)[triangles]
 
 
-def surface_of(vertices: Floats, triangles: Whole) -> TriangleSurface:
+def surface_of(vertices: ArrayLike, triangles: ArrayLike) -> TriangleSurface:
     """Return a surface; raises MeshError where triangles have no area or are no surface.
 
     vertices: (V, 3) [m]; vertices at one place are one. triangles: (T, 3) rows of them.

@@ -90,7 +90,7 @@ _ROWS: Final = {
 
 
 def _of_one(mesh: CellMesh) -> dict[str, np.ndarray]:
-    surface = surface_of(np.array(mesh.vertices, float), np.array(mesh.triangles, np.int64))
+    surface = surface_of(mesh.vertices, mesh.triangles)
     faces = _faces(surface)
     sides = _sides(surface, faces)
     corners, spokes = _corners(surface, sides)

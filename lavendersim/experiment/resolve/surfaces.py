@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from lavendersim.cell.shapes import CellMesh
 from lavendersim.experiment.models.meshes import MOST_TRIANGLES, HeightField, Mesh
 from lavendersim.experiment.resolve.placement import SceneError
-from lavendersim.geometry.triangle_mesh import MeshError, surface_of
 from lavendersim.quantities.quantity import Vector3
 
 Triangles = tuple[tuple[int, int, int], ...]
@@ -15,6 +12,8 @@ Triangles = tuple[tuple[int, int, int], ...]
 
 def resolve_surface(shape: Mesh | HeightField) -> CellMesh:
     """Return a surface whose triangles hang together; raises SceneError, path from the shape."""
+    from lavendersim.geometry.triangle_mesh import MeshError, surface_of  # few scenes need it
+
     if isinstance(shape, HeightField):
         vertices, triangles = _of_heights(shape)
     else:
@@ -25,7 +24,7 @@ def resolve_surface(shape: Mesh | HeightField) -> CellMesh:
                     sentence = f"there are {len(vertices)} vertices, counted from 0; found {row}"
                     raise SceneError(("triangles", number, corner), sentence)
     try:
-        surface_of(np.array(vertices, float), np.array(triangles, np.int64))
+        surface_of(vertices, triangles)
     except MeshError as error:
         where = ("triangles", error.triangle) if isinstance(shape, Mesh) else ("heights",)
         raise SceneError(where, f"triangle {error.triangle}: {error}") from None
