@@ -78,6 +78,15 @@ def fast(at: tuple[float, ...], velocity: tuple[float, ...]) -> str:
     return config({"floor": ridge, "it": it + "surface: one}"}, RATE, 0.1, "friction: 0")
 
 
+def stack() -> str:
+    """Return three boxes on triangles, which pass below the lowest."""
+    bodies = {"floor": f"{{shape: {irregular()}, position: [0, 0, 0], surface: one}}"}
+    for k in range(3):
+        at = flow((0.2 + 0.01 * k, -0.1, 0.1 + 0.2 * k))
+        bodies[f"box_{k}"] = f"{{shape: {BOX}, mass: 1.0, position: {at}, surface: one}}"
+    return config(bodies, RATE, 0.5, "friction: 0.4", repr(GRAVITY))
+
+
 def scene(floor: str, it: tuple[str, tuple[float, ...], str], duration: float) -> str:
     shape, at, rest = it
     still = {PLANE: "", SLAB: ", position: [0, 0, -0.1], fixed: true"}.get(floor)
@@ -100,6 +109,7 @@ def runs() -> dict[str, States]:
     for name, it in ON_SLAB.items():
         texts[f"{name}: box"] = scene(SLAB, it, 0.5)
         texts[f"{name}: mesh"] = scene(slab(), it, 0.5)
+    texts["stack"] = stack()
     return run_scenes(texts | {name: fast(*it) for name, it in FAST.items()})
 
 
@@ -112,6 +122,17 @@ def test_a_floor_of_triangles_moves_bodies_as_one_plane(runs, name: str) -> None
     np.testing.assert_allclose(on_triangles.energy(), on_plane.energy(), rtol=0.0, atol=1e-9)
     way = on_plane.of("it")[0][:, 0]
     assert way[-1] - way[0] > 0.5  # past many sides: they are 0.3 m long in the mean
+
+
+def test_a_stack_rests_on_triangles_with_its_weight(runs) -> None:
+    states = runs["stack"]
+    drift = np.linalg.norm(states.place[-1] - states.place[0], axis=1)
+    assert drift.max() < 1e-9  # the solver's 1e-10 m/s for half a second
+    rows = states.contact
+    last = rows[rows["step"] == rows["step"].max()]
+    on_floor = last[np.minimum(last["body_a"], last["body_b"]) == 0]
+    assert on_floor["force_n"].sum() == pytest.approx(3.0 * GRAVITY, rel=1e-9)
+    np.testing.assert_array_equal(on_floor["nz"], 1.0)
 
 
 @pytest.mark.parametrize("name", ON_SLAB)
