@@ -98,6 +98,8 @@ FAMILIES = (
                 "scenes/rocking_ellipsoid",
                 "scenes/bowl",
                 "scenes/drum",
+                "scenes/triangles",
+                "scenes/height_field",
             ),
         ),
         (scenes.TURNING,),
@@ -109,6 +111,7 @@ FAMILIES = (
             "cylinder_plane",
             "ellipsoid_plane",
             *("sphere_bowl", "box_bowl", "sphere_drum", "cylinder_drum"),
+            *("sphere_mesh", "box_mesh", "cylinder_mesh"),
             "hull_plane",
             "sphere_cylinder",
         ),
@@ -126,7 +129,7 @@ FAMILIES = (
     Family(
         ("hard/found/cohesion_of_what_turns", "hard/found/springs_beside_what_gives_way"),
         shape_pairs=tuple(
-            name for name, pair in SHAPE_PAIRS.items() if "ellipsoid" in name or pair.inside
+            name for name, pair in SHAPE_PAIRS.items() if "ellipsoid" in name or pair.own_normals
         ),
         effects=(
             *("anisotropic_friction", "contact_patch", "joint", "joint_stop", "motor"),

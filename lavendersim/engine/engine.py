@@ -22,6 +22,7 @@ from . import memory, removal
 from .assemble import StepProblem, step_problem
 from .collide.broad.broad_phase import allocate_broad_phase
 from .collide.convex.hull_geometry import HullGeometry
+from .collide.mesh_tables import MeshTables
 from .compile import compiling
 from .effects import effects_of, has_hook, sleeping
 from .records import CONTACTS_FULL, PAIRS_FULL, ROWS_FULL, WOKEN
@@ -93,6 +94,7 @@ class Engine:
         *,
         templates: np.ndarray | None = None,
         hulls: HullGeometry | None = None,
+        meshes: MeshTables | None = None,
         links: np.ndarray | None = None,
         drives: Any = (),
         triggers: Any = (),
@@ -117,13 +119,13 @@ class Engine:
         self.state = memory.allocate_state(
             spec, bodies, velocities, pairs, links, capacity, drives=drives, triggers=triggers
         )
-        self.workspace = memory.allocate_workspace(spec, self.state, hulls, templates)
+        self.workspace = memory.allocate_workspace(spec, self.state, hulls, templates, meshes)
         self.log = self._allocate_log()
         # Looking up the types of forty arrays costs 6 us a call, and 1 ms for the first of an
         # engine; they stay what they are. Of what is allocated here, they follow from the spec and
         # from the types of what is given: engines of one kind differ in sizes alone.
         given = bodies, velocities, pairs, parameters, poses, links, drives, triggers
-        types = spec, _types_of((*given, hulls, templates))
+        types = spec, _types_of((*given, hulls, templates, meshes))
         self.kind = _kinds.setdefault(types, len(_kinds))
         self._entry = _entries.get(self.kind)
         self._objects: tuple[Any, np.ndarray] = (), np.empty(0, np.int64)

@@ -19,12 +19,12 @@ from typing import Any
 from .approach import CREEP, FAR, make_rate, make_slowest
 from .collide.pairs import SHAPE_PAIRS
 from .collide.shape_kernels import make_radius, make_support
-from .collide.shapes import has_cavity
+from .collide.shapes import has_cavity, has_mesh
 from .compile import kernel
 from .contact_lists import make_list_contacts
 from .effects import has_hook
 from .impact_rows import FLUSH, make_keep_present
-from .records import BOWL, DRUM, PLANE, ROPE, SPHERE, TOUCHING
+from .records import BOWL, DRUM, MESH, PLANE, ROPE, SPHERE, TOUCHING
 from .row_terms import row_terms
 from .spec import Spec
 from .vectors import Vec3, dot, minus, plus, position
@@ -46,6 +46,7 @@ def make_drop_flush(spec: Spec) -> Any:
     keep_present, list_contacts = make_keep_present(spec), make_list_contacts(spec)
     sleeps, connects = has_hook(spec, "update_sleeping"), spec.connects
     joins, cavities = row_terms(spec).bilateral, has_cavity(spec)
+    meshes = has_mesh(spec)
 
     def passes(state, contact, other, workspace, params, least):
         bodies, motion = state.bodies, state.motion
@@ -119,6 +120,9 @@ def make_drop_flush(spec: Spec) -> Any:
                 continue
             if cavities:
                 if bodies[row.a].shape == BOWL or bodies[row.a].shape == DRUM:  # without an edge
+                    continue
+            if meshes:
+                if bodies[row.a].shape == MESH:  # `mesh_points` tells its edges
                     continue
             if bodies[row.a].shape != PLANE and bodies[row.b].shape != PLANE:
                 least = slowest(contact, bodies, motion)

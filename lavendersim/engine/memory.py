@@ -19,6 +19,7 @@ from .anderson import FixedPoint, allocate_fixed_point
 from .collide.broad.broad_phase import allocate_broad_phase
 from .collide.convex.hull_geometry import HullGeometry
 from .collide.manifold.own_normals import has_own_normals
+from .collide.mesh_tables import MeshTables
 from .collide.scratch import Scratch, allocate_scratch
 from .contact_lists import ContactLists, allocate_contact_lists
 from .effects import has_hook
@@ -192,7 +193,11 @@ def with_contacts(spec: Spec, state: State, capacity: int) -> State:
 
 
 def allocate_workspace(
-    spec: Spec, state: State, hulls: HullGeometry | None, templates: np.ndarray | None
+    spec: Spec,
+    state: State,
+    hulls: HullGeometry | None,
+    templates: np.ndarray | None,
+    meshes: MeshTables | None = None,
 ) -> Workspace:
     """Return the workspace of a state; templates: of the broad phase."""
     bodies, near = len(state.bodies), has_hook(spec, "find_pairs")
@@ -202,7 +207,7 @@ def allocate_workspace(
     links = len(state.links) if centred and has_hook(spec, "act_beside") else 0
     coupled = bodies if links else 0
     empty = Workspace(
-        collision=allocate_scratch(hulls, has_own_normals(spec)),
+        collision=allocate_scratch(hulls, has_own_normals(spec), meshes, state.bodies.dtype),
         trial=Trial(
             np.zeros(4 * tried, state.bodies.dtype),
             np.zeros(2 * tried, state.velocities.dtype),

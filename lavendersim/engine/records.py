@@ -30,6 +30,7 @@ COMPOUND: Final = 6
 ELLIPSOID: Final = 7
 BOWL: Final = 8
 DRUM: Final = 9
+MESH: Final = 10
 CAVITIES: Final = frozenset({"bowl", "drum"})  # shapes that other bodies are inside of
 ROPE_END: Final = -1  # where a rope or a joint is on a body: `collide.rope`, `collide.joint`
 
@@ -68,13 +69,13 @@ BODY: Final[list[Field]] = [
     ("shape", I8),  # its kind, see above
     # Plane: unit normal [-]. Box: half edge lengths [m]. Sphere: radius in hx [m]. Capsule and
     # cylinder: radius in hx, half length along the body's z in hz [m]. Bowl and drum:
-    # radius in hx [m]. Hull and compound: unused.
+    # radius in hx [m]. Hull, compound and mesh: unused.
     ("hx", F8),
     ("hy", F8),
     ("hz", F8),
     ("offset", F8),  # plane: n . x of its points [m]; other shapes: unused
     ("bound", F8),  # radius of the bounding sphere about the centre of mass [m]; of a bowl
-    # or a drum its own; plane: unused
+    # or a drum its own, of a mesh about its origin; plane: unused
 ]
 
 # Orientation, where some shape but planes and spheres occurs, or something turns.
@@ -87,6 +88,9 @@ ORIENTED_BODY: Final[list[Field]] = [
 ]
 
 HULL_BODY: Final[list[Field]] = [("hull", I8)]  # hulls: row of the hull tables
+
+# Meshes: their first row of `collide.mesh_tables.MeshTables.nodes`, and the one behind their last.
+MESH_BODY: Final[list[Field]] = [("first_node", I8), ("last_node", I8)]
 
 VELOCITY: Final[list[Field]] = [("vx", F8), ("vy", F8), ("vz", F8)]  # of the centre of mass [m/s]
 ANGULAR_VELOCITY: Final[list[Field]] = [("wx", F8), ("wy", F8), ("wz", F8)]  # [rad/s]

@@ -13,7 +13,7 @@ import numpy as np
 
 from lavendersim.cell import Plane
 from lavendersim.figures.style import LOOKS
-from lavendersim.figures.thumbnail import colour_of, corners_of, grounds_of, view_of
+from lavendersim.figures.thumbnail import colour_of, grounds_of, parts_of, view_of
 from lavendersim.measures.changes import removals
 
 FRAMES: Final = 120  # states at most
@@ -25,9 +25,9 @@ def motion(trace: Any) -> str:
     """Return the sampled motion of a log as JSON; "" where fewer than two states are whole.
 
     `t`: times [s]; `right`, `up`: directions of the first view; `grounds`: [point, direction] of
-    planes seen edge on; `bodies`: colour `c` ("none" of a cavity), corners `v` in the body's frame
-    [m], whether `fixed`, and poses `p` [x, y, z, qw, qx, qy, qz], one a time, null where it is not
-    there.
+    planes seen edge on; `bodies`, of a mesh its triangles: colour `c` ("none" of a cavity), corners
+    `v` in the body's frame [m], whether `fixed`, and poses `p` [x, y, z, qw, qx, qy, qz], one a
+    time, null where it is not there.
     """
     rows, poses = trace.recorded_pose
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
@@ -45,10 +45,10 @@ def motion(trace: Any) -> str:
         body = bodies[i]
         kept = poses[shown[:1] if body.fixed else shown, i]
         last = gone.get(trace.bodies[i])
-        drawn.append(
+        drawn += [
             {
                 "c": colour_of(body.shape) if body.fixed else LOOKS[i % len(LOOKS)].colour,
-                "v": _rounded(corners_of(body.shape), digits),
+                "v": _rounded(part, digits),
                 "fixed": body.fixed,
                 "p": [
                     None
@@ -57,7 +57,8 @@ def motion(trace: Any) -> str:
                     for row, pose in zip(rows[shown], kept, strict=False)
                 ],
             }
-        )
+            for part in parts_of(body.shape)
+        ]
     planes = [
         [_rounded(point[0] * right + point[1] * up, digits), _rounded(level, 6)]
         for point, along in grounds_of(trace, right, up)

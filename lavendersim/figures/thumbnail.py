@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.cell import Bowl, Cavity, CellShape, Convex, Ellipsoid, Plane
+from lavendersim.cell import Bowl, Cavity, CellMesh, CellShape, Convex, Ellipsoid, Plane
 from lavendersim.figures.style import DARK, GREY, LOOKS
 from lavendersim.geometry.rotations import rotation_matrices, rotation_matrix
 from lavendersim.geometry.shapes import half_space, pieces
@@ -23,6 +23,7 @@ WIDTH, HEIGHT, DPI = 1.6, 1.1, 100  # inch, inch, dots per inch: 160 x 110 dots
 MARGIN = 0.08  # of the picture, on every side
 BEFORE, FIXED = "#e8e8e8", "#bbbbbb"  # where bodies began; what never moves
 AROUND = "none"  # a cavity, which is around the bodies
+MOST_TRIANGLES: Final = 1500  # of a mesh that are drawn one by one
 AROUND_IT: Final = 48  # corners of its circles
 NOTHING: Final = np.array([[-1.0, 0.0], [1.0, 1.0]])  # a picture without bodies
 MOST_BODIES = 3000  # of a larger scene the first ones; more are less than a dot each
@@ -104,16 +105,18 @@ def _outlines(
         turns = rotation_matrices(pose[:, 3:])
         for i in sorted(solid, key=lambda i: -float(pose[i, :3] @ far)):
             if (i in movable or is_end) and not (is_end and i in gone):
-                corners = pose[i, :3] + corners_of(bodies[i].shape) @ turns[i].T
-                outlines.append(_hull(np.column_stack([corners @ right, corners @ up])))
                 own = LOOKS[i % len(LOOKS)].colour if is_end else BEFORE
-                colours.append(own if i in movable else colour_of(bodies[i].shape))
+                for part in parts_of(bodies[i].shape):
+                    corners = pose[i, :3] + part @ turns[i].T
+                    outlines.append(_hull(np.column_stack([corners @ right, corners @ up])))
+                    colours.append(own if i in movable else colour_of(bodies[i].shape))
     return outlines, colours, np.concatenate(_seen(outlines, colours) or [NOTHING])
 
 
 def colour_of(shape: CellShape) -> str:
     """Return the colour of a body that nothing moves."""
-    return AROUND if isinstance(shape, Cavity) else FIXED
+    around = isinstance(shape, CellMesh) and len(shape.triangles) > MOST_TRIANGLES
+    return AROUND if around or isinstance(shape, Cavity) else FIXED
 
 
 def _seen(outlines: list[np.ndarray], colours: list[str]) -> list[np.ndarray]:
@@ -140,6 +143,16 @@ def grounds_of(
     return found
 
 
+def parts_of(shape: CellShape) -> list[np.ndarray]:
+    """Return points (n, 3) in the body's frame [m] whose convex hulls are what is drawn.
+
+    Of a mesh its triangles, of one of very many their hull.
+    """
+    if not isinstance(shape, CellMesh) or len(shape.triangles) > MOST_TRIANGLES:
+        return [corners_of(shape)]
+    return list(np.array(shape.vertices)[np.array(shape.triangles)])
+
+
 @lru_cache(maxsize=256)
 def corners_of(shape: CellShape) -> np.ndarray:
     """Return points (n, 3) in the body's frame [m] whose convex hull is the shape, or nearly.
@@ -148,6 +161,8 @@ def corners_of(shape: CellShape) -> np.ndarray:
     """
     if isinstance(shape, Cavity):
         return _inside(shape)
+    if isinstance(shape, CellMesh):
+        return np.array(shape.vertices)[np.unique(shape.triangles)]
     placed = [
         piece.position + _round_or_not(piece.shape) @ rotation_matrix(piece.orientation).T
         for piece in pieces(shape)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lavendersim.cell.body import CellBody
-from lavendersim.cell.shapes import Cavity, Convex, Plane
+from lavendersim.cell.shapes import Cavity, CellMesh, Convex, Plane
 from lavendersim.geometry.rotations import Floats, rotation_matrix, unit_quaternion
 from lavendersim.geometry.shapes import extent
 
@@ -17,7 +17,7 @@ def vector(values: tuple[float, ...]) -> Floats:
 
 def is_movable(body: CellBody) -> bool:
     """Return whether contacts and forces move a body."""
-    return not (isinstance(body.shape, Plane | Cavity) or body.fixed)
+    return not (isinstance(body.shape, Plane | Cavity | CellMesh) or body.fixed)
 
 
 def mass_of(body: CellBody) -> float:

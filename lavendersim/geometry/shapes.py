@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lavendersim.cell.shapes import Cavity, CellCompound, CellShape, CellSimple, Plane
+from lavendersim.cell.shapes import Cavity, CellCompound, CellMesh, CellShape, CellSimple, Plane
 from lavendersim.geometry.quaternions import IDENTITY
 from lavendersim.geometry.rotations import Floats, rotation_matrix
 
@@ -42,6 +42,8 @@ def bounding_radius(shape: CellShape) -> float:
             return math.inf
         case Cavity():
             return shape.radius
+        case CellMesh():
+            return shape.bounding_radius()
         case CellCompound():
             return max(
                 math.hypot(*part.position) + bounding_radius(part.shape) for part in shape.parts
@@ -55,7 +57,7 @@ def thickness(shape: CellShape) -> float:
     Infinite for a plane or a cavity, which has no other side.
     """
     match shape:
-        case Plane() | Cavity():
+        case Plane() | Cavity() | CellMesh():
             return math.inf
         case CellCompound():
             return min(thickness(part.shape) for part in shape.parts)
@@ -68,7 +70,7 @@ def extent(shape: CellShape, rotation: Floats, direction: Floats) -> float:
     rotation: matrix, body to world. This is the support function of the shape.
     """
     match shape:
-        case Plane() | Cavity():
+        case Plane() | Cavity() | CellMesh():
             raise ValueError(f"a {shape.kind} has no extent")
         case CellCompound():
             return max(
@@ -90,7 +92,7 @@ class Piece(NamedTuple):
 
 def pieces(shape: CellShape) -> tuple[Piece, ...]:
     """Return the convex solids that a shape is made of: a compound's parts, or itself."""
-    if isinstance(shape, Plane | Cavity):
+    if isinstance(shape, Plane | Cavity | CellMesh):
         return ()
     if isinstance(shape, CellCompound):
         return tuple(

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot
 
-from lavendersim.cell import Cavity, CellBody, Plane
+from lavendersim.cell import Cavity, CellBody, CellMesh, Plane
 from lavendersim.errors import Defect
 from lavendersim.experiment import Cell, body_path
 from lavendersim.geometry.shapes import thickness
@@ -25,7 +25,7 @@ def crossing(cell: Cell) -> Iterator[Defect]:
     solids = {
         name: body
         for name, body in config.scene.bodies.items()
-        if not isinstance(body.shape, Plane | Cavity)
+        if not isinstance(body.shape, Plane | Cavity | CellMesh)
     }
     thinnest = sorted(solids, key=lambda name: thickness(solids[name].shape))[:2]
     tree = cell.tree

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from lavendersim.cell import Cavity, CellBody, Drum, Plane, Sphere
+from lavendersim.cell import Cavity, CellBody, CellMesh, Drum, Plane, Sphere
 from lavendersim.cell.shapes import CellSimple
 from lavendersim.engine.effects import holding
 from lavendersim.errors import Defect
@@ -83,7 +83,9 @@ def _defect(cell: Cell, name: str, sentence: str) -> Defect:
 
 def _parts(bodies: dict[str, CellBody]) -> Parts:
     solids = {
-        name: body for name, body in bodies.items() if not isinstance(body.shape, Plane | Cavity)
+        name: body
+        for name, body in bodies.items()
+        if not isinstance(body.shape, Plane | Cavity | CellMesh)
     }
     centres = np.array([body.position for body in solids.values()]).reshape(-1, 3)
     turns = rotation_matrices(

@@ -18,7 +18,7 @@ from lavendersim.replay.camera import Camera
 from lavendersim.replay.layer import ALONE, Layer
 from lavendersim.replay.removal import removed
 from lavendersim.replay.shapes import XYZW, DrawnBody, Vector, shapes
-from lavendersim.replay.solids import BodyLook, archetypes
+from lavendersim.replay.solids import BodyLook, archetypes, surface
 from lavendersim.replay.timeline import at_time
 
 if TYPE_CHECKING:
@@ -123,6 +123,8 @@ def draw(
         # Forces act at surfaces and point into bodies: solid bodies would hide them.
         look = BodyLook(colour, body.fixed and body.kind not in SEEN_INTO, body.name, labelled)
         drawn = archetypes(body.pieces, look)
+        if body.mesh is not None:
+            drawn = {body.kind: surface(body.mesh, look)}
         frame = rr.CoordinateFrame(layer.frame(body.name))
         for kind, forms in drawn.items():
             within = [] if len(drawn) == 1 else [kind]

@@ -1,4 +1,4 @@
-"""The geometry of a cell's bodies as it is drawn: planes, or convex pieces in the body's frame."""
+"""The geometry of a cell's bodies as it is drawn: planes, meshes, or convex pieces."""
 
 from __future__ import annotations
 
@@ -7,7 +7,16 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from lavendersim.cell import Cavity, CellBody, CellConfig, Cylinder, Drum, Plane, Sphere
+from lavendersim.cell import (
+    Cavity,
+    CellBody,
+    CellConfig,
+    CellMesh,
+    Cylinder,
+    Drum,
+    Plane,
+    Sphere,
+)
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.quaternions import IDENTITY
 from lavendersim.geometry.shapes import Piece, bounding_radius, half_space, pieces
@@ -20,7 +29,7 @@ XYZW = [1, 2, 3, 0]  # of a quaternion w x y z: the order that rerun takes
 
 
 class DrawnBody(NamedTuple):
-    """One body's geometry: a plane, or pieces."""
+    """One body's geometry: a plane, a mesh, or pieces, in its frame."""
 
     name: str
     kind: str
@@ -29,6 +38,7 @@ class DrawnBody(NamedTuple):
     normal: Vector
     offset: float
     bounding_radius: float  # [m] about the centre of mass; 0 for a plane
+    mesh: CellMesh | None = None
 
 
 def shapes(cell: CellConfig) -> list[DrawnBody]:
@@ -41,6 +51,9 @@ def _shape(name: str, body: CellBody) -> DrawnBody:
     if isinstance(shape, Plane):
         normal, offset = half_space(shape)
         return DrawnBody(name, shape.kind, fixed, (), normal, offset, 0.0)
+    if isinstance(shape, CellMesh):
+        bound = bounding_radius(shape)
+        return DrawnBody(name, shape.kind, fixed, (), UP, 0.0, bound, shape)
     drawn = _walls(shape) if isinstance(shape, Cavity) else pieces(shape)
     return DrawnBody(name, shape.kind, fixed, drawn, UP, 0.0, bounding_radius(shape))
 

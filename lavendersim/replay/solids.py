@@ -9,7 +9,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import rerun as rr
 
-from lavendersim.cell import Box, Capsule, CellHull, Convex, Cylinder, Ellipsoid, Sphere
+from lavendersim.cell import (
+    Box,
+    Capsule,
+    CellHull,
+    CellMesh,
+    Convex,
+    Cylinder,
+    Ellipsoid,
+    Sphere,
+)
 from lavendersim.geometry.convex_hull import Polyhedron, convex_hull
 from lavendersim.geometry.rotations import rotated
 from lavendersim.geometry.shapes import Piece
@@ -18,6 +27,7 @@ from lavendersim.replay.shapes import XYZW, Vector
 # Of the faces of a movable hull: forces act at surfaces and point into bodies, so they must be seen
 # through them.
 VEIL = 60
+LINE_SHADE = 0.5  # sides of triangles are as bright as this share of their faces
 
 
 class BodyLook(NamedTuple):
@@ -101,8 +111,26 @@ def _polyhedra(
             edges.append(points[[*loop, loop[0]]])
             fan = pairwise(loop[1:])
             triangles += [(first + loop[0], first + one, first + two) for one, two in fan]
+    return _faces(np.concatenate(corners), triangles, edges, look)
+
+
+def surface(mesh: CellMesh, look: BodyLook) -> list[Any]:
+    """Return the triangles of a surface, and their sides as lines."""
+    points = np.array(mesh.vertices, float)
+    loops = [points[[*triangle, triangle[0]]] for triangle in mesh.triangles]
+    red, green, blue = (int(LINE_SHADE * part) for part in look.colour)
+    return _faces(points, list(mesh.triangles), loops, look, (red, green, blue))
+
+
+def _faces(
+    corners: Vector,
+    triangles: list[tuple[int, int, int]],
+    edges: list[Vector],
+    look: BodyLook,
+    line_colour: tuple[int, int, int] | None = None,
+) -> list[Any]:
     # Every triangle has corners of its own, or faces would be shaded as if they were round.
-    flat = np.concatenate(corners)[np.array(triangles).ravel()]
+    flat = corners[np.array(triangles).ravel()]
     alpha = 255 if look.solid else VEIL
     mesh = rr.Mesh3D(
         vertex_positions=flat,
@@ -111,7 +139,7 @@ def _polyhedra(
     )
     lines = rr.LineStrips3D(
         edges,
-        colors=[look.colour],
+        colors=[line_colour or look.colour],
         radii=rr.Radius.ui_points(1.5),
         labels=[look.label],
         show_labels=look.labelled,

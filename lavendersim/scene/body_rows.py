@@ -10,13 +10,23 @@ from typing import Any, Final
 
 import numpy as np
 
-from lavendersim.cell import Cavity, CellBody, CellHull, CellPart, CellShape, Convex, Plane
+from lavendersim.cell import (
+    Cavity,
+    CellBody,
+    CellHull,
+    CellMesh,
+    CellPart,
+    CellShape,
+    Convex,
+    Plane,
+)
 from lavendersim.engine.collide.convex.hull_geometry import (
     HullGeometry,
     Polyhedron,
     hull_geometry,
 )
-from lavendersim.engine.collide.shapes import SHAPES
+from lavendersim.engine.collide.mesh_tables import MeshTables
+from lavendersim.engine.collide.shapes import SHAPES, has_mesh
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.record_layout import allocate_bodies
 from lavendersim.engine.spec import Spec
@@ -51,8 +61,10 @@ def part_pose(pose: np.ndarray, part: CellPart) -> np.ndarray:
 
 def body_table(
     spec: Spec, rows: Sequence[Collider], poses: np.ndarray
-) -> tuple[np.ndarray, HullGeometry]:
-    """Return the records of all rows, and the tables of their hulls; equal hulls share one.
+) -> tuple[np.ndarray, HullGeometry, MeshTables | None]:
+    """Return the records of all rows, and the tables of their hulls and meshes.
+
+    Equal hulls share one, and the same mesh; None where there is no mesh.
 
     poses: (bodies, 7), those of the bodies alone.
     """
@@ -78,7 +90,22 @@ def body_table(
         _fill(record, ("x", "y", "z"), pose[:3])
         orient(record, pose[3:])
         assert k == row.owner or row.part is not None
-    return bodies, hull_geometry(polyhedra)
+    return bodies, hull_geometry(polyhedra), _with_meshes(spec, rows, bodies)
+
+
+def _with_meshes(spec: Spec, rows: Sequence[Collider], bodies: np.ndarray) -> MeshTables | None:
+    """Return the tables of meshes that something may touch, and write where each stands there."""
+    if not has_mesh(spec):
+        return None
+    from .triangle_tables import mesh_tables  # few scenes need it
+
+    meshes = {id(row.shape): row.shape for row in rows if isinstance(row.shape, CellMesh)}
+    tables, spans = mesh_tables(list(meshes.values()))
+    span_of = dict(zip(meshes, spans, strict=True))
+    for record, row in zip(bodies, rows, strict=True):
+        if isinstance(row.shape, CellMesh):
+            record["first_node"], record["last_node"] = span_of[id(row.shape)]
+    return tables
 
 
 def orient(record: np.void, quaternion: np.ndarray) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from lavendersim.cell import CellBody, CellConfig, CellForce, CellRecord, Numerics
 from lavendersim.clock import Clock
 from lavendersim.engine.collide.convex.hull_geometry import HullGeometry
+from lavendersim.engine.collide.mesh_tables import MeshTables
 from lavendersim.engine.effects import effects_of
 from lavendersim.engine.engine import Engine
 from lavendersim.engine.record_layout import (
@@ -54,6 +55,7 @@ class Scene(NamedTuple):
     clock: Clock  # exact times of its steps
     templates: np.ndarray  # (classes, classes) what their pairs have in common; see `pair_tables`
     hulls: HullGeometry
+    meshes: MeshTables | None
     forces: tuple[CellForce, ...]  # `events` lets them act
     links: np.ndarray  # what effects join bodies by
     drives: Any  # functions of time that act on bodies: `memory.Drives`, or ()
@@ -74,6 +76,7 @@ class Scene(NamedTuple):
             self.poses,
             templates=self.templates,
             hulls=self.hulls,
+            meshes=self.meshes,
             links=self.links,
             drives=self.drives,
             triggers=self.triggers,
@@ -152,7 +155,7 @@ def build(config: CellConfig, spec: Spec) -> Scene:
     described = list(config.scene.bodies.values())
     rows = colliders(described)
     poses = np.array([pose_of(body) for body in described]).reshape(-1, 7)
-    bodies, hulls = body_table(spec, rows, poses)
+    bodies, hulls, meshes = body_table(spec, rows, poses)
     bodies = with_ends(spec, bodies, config)
     first_joint = len(bodies)
     bodies = with_joint_ends(spec, bodies, config)
@@ -176,6 +179,7 @@ def build(config: CellConfig, spec: Spec) -> Scene:
         clock=clock,
         templates=tables.templates,
         hulls=hulls,
+        meshes=meshes,
         forces=config.scene.forces,
         links=link_table(config, spec, bodies),
         drives=drive_tables(config, spec, clock),

@@ -17,7 +17,7 @@ from typing import Final
 
 import numpy as np
 
-from lavendersim.cell import Cavity, CellBody, CellConfig, Convex, Plane, Sphere
+from lavendersim.cell import Cavity, CellBody, CellConfig, CellMesh, Convex, Plane, Sphere
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.meeting_boxes import meeting_boxes
 from lavendersim.geometry.minkowski_sums import extents, sums_of
@@ -35,7 +35,7 @@ Bounds = np.ndarray  # (n, 3) [m]
 def expected_contacts(config: CellConfig) -> float:
     """Return about how many contacts a step has, the mean over the run."""
     bodies = list(config.scene.bodies.values())
-    solids = [body for body in bodies if not isinstance(body.shape, Plane | Cavity)]
+    solids = [body for body in bodies if not isinstance(body.shape, Plane | Cavity | CellMesh)]
     low, high = _bounds(solids)
     start = _between_solids(solids, low, high) + _on_planes(bodies, solids, high - low)
     gravity = config.scene.gravity
@@ -80,7 +80,7 @@ def _bounds(solids: list[CellBody]) -> tuple[Bounds, Bounds]:
 
 
 def _extent(body: CellBody, direction: tuple[float, float, float]) -> float:
-    assert not isinstance(body.shape, Plane | Cavity)  # they have no extent
+    assert not isinstance(body.shape, Plane | Cavity | CellMesh)  # they have no extent
     return extent_against(body.shape, body.orientation, direction)
 
 

@@ -1,15 +1,15 @@
 """The URDF <visual> elements that show a shape in its body.
 
 URDF knows boxes, spheres and cylinders without files. A capsule is a cylinder and two spheres. Any
-other shape is drawn by its edges or those of its corners' hull, a cavity by circles, thin
-cylinders: a mesh would be a file beside the log. Shapes are given in the body's frame, so nothing
-here knows where the body is, but for planes.
+other shape is drawn by its edges or those of its corners' hull, a cavity by circles, a mesh by the
+sides of its triangles, thin cylinders: a mesh would be a file beside the log. Shapes are given in
+the body's frame, so nothing here knows where the body is, but for planes.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +22,7 @@ from lavendersim.cell import (
     Cavity,
     CellCompound,
     CellHull,
+    CellMesh,
     CellShape,
     CellSimple,
     Cylinder,
@@ -33,6 +34,8 @@ from lavendersim.geometry.convex_hull import Polyhedron, convex_hull
 from lavendersim.geometry.rotations import frame_along, rotation_matrix
 
 PLANE_THICKNESS = 0.02  # m; thin beside any body, thick enough to be seen edge-on
+MOST_SIDES = 2000  # of a mesh that are drawn
+SIDE_SHARE = 0.002  # radius of a drawn side of a triangle by the reach of its mesh
 EDGE_SHARE = 0.01  # radius of a drawn edge by the reach of its hull
 
 Matrix = NDArray[np.float64]
@@ -63,6 +66,8 @@ def visuals(shape: CellShape, pose: Matrix, plane_side: float) -> list[Visual]:
     """
     if isinstance(shape, Cavity):
         return list(_circles(shape))
+    if isinstance(shape, CellMesh):
+        return list(_sides(shape))
     if isinstance(shape, Plane):
         return [_plane(shape, pose, plane_side)]
     if isinstance(shape, CellCompound):
@@ -96,12 +101,30 @@ def _solid(shape: CellSimple) -> Iterator[Visual]:
 def _edges(hull: Polyhedron) -> Iterator[Visual]:
     points = np.array(hull.points, float)
     radius = EDGE_SHARE * float(np.linalg.norm(points, axis=1).max())
+    yield from _bars(points, _pairs(hull.faces), radius)
+
+
+def _sides(mesh: CellMesh) -> Iterator[Visual]:
+    """Yield thin bars along the sides of triangles, of many those of some, evenly among them."""
+    points = np.array(mesh.vertices, float)
+    sides = _pairs(mesh.triangles)
+    stride = 1 + (len(sides) - 1) // MOST_SIDES
+    radius = SIDE_SHARE * mesh.bounding_radius()
+    yield from _bars(points, sides[::stride], radius)
+
+
+def _pairs(faces: Sequence[Sequence[int]]) -> list[tuple[int, int]]:
+    """Return the corners of every edge of faces, each edge once."""
     pairs = {
         (min(one, other), max(one, other))
-        for face in hull.faces
+        for face in faces
         for one, other in zip(face, [*face[1:], face[0]], strict=True)
     }
-    for one, other in sorted(pairs):
+    return sorted(pairs)
+
+
+def _bars(points: Matrix, pairs: Sequence[tuple[int, int]], radius: float) -> Iterator[Visual]:
+    for one, other in pairs:
         along = points[other] - points[one]
         length = float(np.linalg.norm(along))
         middle = 0.5 * (points[one] + points[other])

@@ -40,7 +40,7 @@ EVERYTHING = Spec(
     tolerance=True,
 )
 
-WALLS = ("plane", "bowl", "drum")  # what never has a mass
+WALLS = ("plane", "bowl", "drum", "mesh")  # what never has a mass
 SOLID: TypeAdapter[Any] = TypeAdapter(Annotated[Solid, Field(discriminator="kind")])
 
 

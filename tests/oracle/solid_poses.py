@@ -28,8 +28,8 @@ from lavendersim.engine.records import POINT, dtype
 from lavendersim.engine.spec import Spec
 
 _TEXT = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()[:8]
-# What is inside a cavity is no convex body beside another: tests/.../pairs/test_cavity_pairs.py.
-PAIRS = tuple(sorted(name for name, pair in SHAPE_PAIRS.items() if not pair.inside))
+# Cavities and meshes are no convex bodies: tests/unit/engine/cavity_contacts.py, mesh_contacts.py.
+PAIRS = tuple(sorted(name for name, pair in SHAPE_PAIRS.items() if not pair.own_normals))
 EVERY_SHAPE = Spec(
     effects=("rotation", "speculative"), shape_pairs=PAIRS, solver=f"solid poses {_TEXT}"
 )

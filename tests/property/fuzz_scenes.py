@@ -18,6 +18,7 @@ import yaml
 from fuzz_cavities import cavity
 from fuzz_draws import Draw
 from fuzz_drives import events, forces, motion, paired, springs
+from fuzz_grounds import ground
 from fuzz_joints import connections
 
 from lavendersim.engine.collide import SHAPE_PAIRS
@@ -77,7 +78,7 @@ class Drawn(NamedTuple):
 
     def switches(self) -> dict[str, str]:
         """Return the section `effects` that forces all of it on."""
-        shapes = {*self.shapes, "plane", "bowl", "drum"} - {"compound"}
+        shapes = {*self.shapes, "plane", "bowl", "drum", "mesh"} - {"compound"}
         pairs = [name for name, pair in SHAPE_PAIRS.items() if {*pair.shapes} <= shapes]
         return dict.fromkeys((*self.effects, *pairs), "on")
 
@@ -336,6 +337,7 @@ def config_of(seed: str, plan: Drawn) -> dict[str, Any]:
         shape = {"kind": "plane", "offset": -pen.power(-2.0, 1.0)}
         bodies["floor"] = {"shape": shape, "surface": pen.surface(1.0)}
     cavity(pen.beside(f"{seed} cavity"), bodies, sizes)
+    ground(pen.beside(f"{seed} ground"), bodies, sizes)
     grain(pen, bodies)
     movable = [name for name, body in bodies.items() if "mass" in body]
     scene: dict[str, Any] = {

@@ -98,17 +98,22 @@ def test_each_run_of_the_accurate_engine_asks_for_an_accuracy() -> None:
         assert numerics["smallest_timestep"] <= float(Fraction(numerics["timestep"])) / 8.0
 
 
-def test_a_cavity_changes_no_draw_of_the_bodies_inside(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cavity_or_a_ground_changes_no_draw_of_other_bodies(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """So a scene without one is what it was before there were any."""
     trees = [drawn(FULL, "full", 0, number)["scene"]["bodies"] for number in range(40)]
     monkeypatch.setattr("fuzz_scenes.cavity", lambda *_: None)
+    monkeypatch.setattr("fuzz_scenes.ground", lambda *_: None)
     plain = [drawn(FULL, "full", 0, number)["scene"]["bodies"] for number in range(40)]
     assert any("cavity" in bodies for bodies in trees)
+    assert any("ground" in bodies for bodies in trees)
     for bodies, alone in zip(trees, plain, strict=True):
-        if "cavity" not in bodies:
+        around = {"cavity", "ground"} & {*bodies}
+        if not around:
             assert bodies == alone
         else:
-            shapes = {name: body["shape"] for name, body in bodies.items() if name != "cavity"}
+            shapes = {name: one["shape"] for name, one in bodies.items() if name not in around}
             assert shapes == {name: body["shape"] for name, body in alone.items()}
 
 
@@ -276,6 +281,9 @@ def test_scenes_have_all_that_drives_them() -> None:
     assert {body["shape"]["kind"] for body in around} == {"bowl", "drum"}
     assert any("motion" in body for body in around)
     assert any(body.get("angular_velocity") for body in around)
+    grounds = [scene["bodies"]["ground"] for scene in scenes if "ground" in scene["bodies"]]
+    assert 20 < len(grounds) < 70  # one of eight, of those without a cavity
+    assert {body["shape"]["kind"] for body in grounds} == {"height_field", "mesh"}
     masses = [body["mass"] for body in bodies if "mass" in body]
     assert max(masses) / min(masses) > 1e9
 

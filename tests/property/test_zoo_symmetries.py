@@ -144,6 +144,14 @@ def test_a_world_in_a_cavity_moves_in_a_mirror_as_its_image(kinds, most, known, 
     check_mirrored(data.draw(zoos(kinds, (2, most), cavity=True)), GRAVITY, known)
 
 
+@EITHER
+@given(st.data())
+@SOME
+def test_a_world_on_triangles_moves_alike_however_it_is_turned(kinds, most, known, data):
+    bodies = data.draw(zoos(kinds, (2, most), ground=True))
+    check_turned(bodies, np.array([1.0, *data.draw(vector)]), NOWHERE, known)
+
+
 def check_turned(bodies, quaternion, gravity, known):
     quaternion = quaternion / np.linalg.norm(quaternion)
     matrix = convex.matrix_of(quaternion)

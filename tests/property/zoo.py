@@ -73,6 +73,18 @@ SHAPES = ("sphere", "box", "capsule", "cylinder", "ellipsoid", "hull", "compound
 HULL = ((0.2, 0, -0.12), (-0.1, 0.17, -0.12), (-0.1, -0.17, -0.12), (0.02, 0.03, 0.25))
 # Half a metre apart, so that bodies some 0.4 m wide that fly together meet within a few steps.
 CORNERS = 0.5 * np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0)], float)
+# Two slopes of irregular triangles, 2 m wide, 0.2 m down from their ridge.
+ROOF = {
+    "kind": "mesh",
+    "vertices": [
+        *([-1, -1, -0.2], [0, -1, 0], [1, -1, -0.2], [-1, 1, -0.2], [0, 1, 0], [1, 1, -0.2]),
+        *([-0.3, 0.2, -0.06], [0.4, -0.1, -0.08]),
+    ],
+    "triangles": [
+        *([0, 1, 6], [1, 4, 6], [4, 3, 6], [3, 0, 6]),
+        *([1, 2, 7], [2, 5, 7], [5, 4, 7], [4, 1, 7]),
+    ],
+}
 FLOOR = -0.3  # a few steps below most bodies at the origin [m]
 CAVITY = 0.9  # radius of what the corners are inside of [m]
 OUT = np.array([0.6, 0.48, 0.64])  # from its wall, over the origin, to its centre
@@ -108,13 +120,15 @@ def zoos(
     compliance: Any = rigid,
     floor: bool = False,
     cavity: bool = False,
+    ground: bool = False,
 ) -> dict[str, Any]:
     """Bodies that fly and tumble towards the origin, masses over two decades.
 
     cavity: and beyond it, to the wall of a bowl or a drum that is as far as a floor.
+    ground: and down to a roof of triangles whose ridge is there.
     """
     bodies: dict[str, Any] = {}
-    down = np.array([0.0, 0.0, 2.0 * floor])
+    down = np.array([0.0, 0.0, 2.0 * (floor or ground)])
     if cavity:
         down = 4.0 * OUT
     for i in range(draw(st.integers(*count))):
@@ -135,6 +149,8 @@ def zoos(
     if cavity:
         wall = {"kind": draw(st.sampled_from(("bowl", "drum"))), "radius": CAVITY}
         bodies["cavity"] = body(wall, (CAVITY + FLOOR) * OUT, orientation=ACROSS, friction=1.0)
+    if ground:
+        bodies["ground"] = body(ROOF, (0.1, 0.05, FLOOR), friction=1.0)
     return bodies
 
 

@@ -113,7 +113,7 @@ def test_nothing_takes_more_than_six_arguments_by_their_place() -> None:
 
 def test_every_shape_of_a_config_has_kernels() -> None:
     named = {kind_of(model) for model in PRIMITIVES}
-    assert named | {"plane", "hull", "compound", "bowl", "drum"} == set(SHAPES)
+    assert named | {"plane", "hull", "compound", "bowl", "drum", "mesh"} == set(SHAPES)
     assert len({shape.kind for shape in SHAPES.values()}) == len(SHAPES)
 
 

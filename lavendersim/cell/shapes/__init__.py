@@ -1,4 +1,4 @@
-"""Shapes of bodies: half-space, cavities, convex solids, compounds of these. One file each.
+"""Shapes of bodies: half-space, cavities, meshes, convex solids, compounds of these. One file each.
 
 Each has a frame of its own. The frame of a body has its origin in the centre of mass and its axes
 along the principal axes of the shape; corners of hulls and parts of compounds are given in it.
@@ -18,15 +18,16 @@ from lavendersim.cell.shapes.convex import PRIMITIVES, CellSimple
 from lavendersim.cell.shapes.cylinder import Cylinder
 from lavendersim.cell.shapes.ellipsoid import Ellipsoid
 from lavendersim.cell.shapes.hull import CellHull
+from lavendersim.cell.shapes.mesh import CellMesh
 from lavendersim.cell.shapes.plane import Plane
 from lavendersim.cell.shapes.shape import Convex, Homogeneous, Primitive
 from lavendersim.cell.shapes.sphere import Sphere
 
 if TYPE_CHECKING:
-    CellShape = Plane | Cavity | Convex | CellCompound
+    CellShape = Plane | Cavity | CellMesh | Convex | CellCompound
 else:
     CellShape = Annotated[
-        Union[(Plane, *PRIMITIVES, CellHull, CellCompound, Bowl, Drum)],
+        Union[(Plane, *PRIMITIVES, CellHull, CellCompound, Bowl, Drum, CellMesh)],
         Field(discriminator="kind"),
     ]
 
@@ -38,6 +39,7 @@ __all__ = [
     "Cavity",
     "CellCompound",
     "CellHull",
+    "CellMesh",
     "CellPart",
     "CellShape",
     "CellSimple",

@@ -16,7 +16,8 @@ from .pairs import SHAPE_PAIRS
 from .shapes import has_curved
 
 # Files of `pairs` whose kernels look for a depth by EPA.
-BY_EPA = ("convex", "ellipsoid_convex")
+OF_EDGES = tuple(f"{shape}_mesh" for shape in ("box", "capsule", "cylinder", "hull", "ellipsoid"))
+BY_EPA = ("convex", "ellipsoid_convex", *OF_EDGES)
 
 
 def needs_separation(spec: Spec) -> bool:

@@ -6,12 +6,13 @@ Kernels allocate nothing: every array they need lies here, under its name.
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..records import POINT, dtype
 from .convex.hull_geometry import HullGeometry, hull_geometry
+from .mesh_tables import MeshTables, with_room
 from .records import FACE, NOT_CONVERGED, PLANE_OF_FEATURE, SEPARATION, VECTOR, VERTEX
 
 # Points of one manifold of boxes: two polygons of at most eight vertices each.
@@ -87,6 +88,7 @@ class Scratch(NamedTuple):
     outline_a: Outline
     outline_b: Outline
     polygon: np.ndarray  # POINT rows: two polygons being cut
+    meshes: Any  # tables of triangle meshes: `mesh_tables.MeshTables`, or ()
 
 
 def _longest_and_most(hulls: HullGeometry) -> tuple[int, int]:
@@ -100,10 +102,16 @@ def _of_the_box() -> tuple[int, int]:
     return _longest_and_most(hull_geometry())
 
 
-def allocate_scratch(geometry: HullGeometry | None = None, own_normals: bool = False) -> Scratch:
-    """Return scratch for one thread, around the tables of a scene's hulls.
+def allocate_scratch(
+    geometry: HullGeometry | None = None,
+    own_normals: bool = False,
+    meshes: MeshTables | None = None,
+    bodies: np.dtype | None = None,
+) -> Scratch:
+    """Return scratch for one thread, around the tables of a scene's hulls and meshes.
 
-    own_normals: whether points of a manifold may have normals of their own.
+    own_normals: whether points of a manifold may have normals of their own. bodies: the record of a
+    body, where there are meshes.
     """
     hulls = hull_geometry() if geometry is None else geometry
     longest, most = _longest_and_most(hulls) if len(hulls.vertex_start) > 2 else _of_the_box()
@@ -112,6 +120,11 @@ def allocate_scratch(geometry: HullGeometry | None = None, own_normals: bool = F
     # looks for two rows more; two halves.
     rows = max(2 * (3 * longest + 2), most)
     points = max(MANIFOLD_POINTS, rows)
+    own_meshes: Any = ()
+    if meshes is not None:
+        assert bodies is not None
+        own_meshes = with_room(meshes, bodies, points)
+        points = max(points, len(own_meshes.points))
 
     def box() -> BoxFrame:
         return BoxFrame(
@@ -153,4 +166,5 @@ def allocate_scratch(geometry: HullGeometry | None = None, own_normals: bool = F
         outline_a=outline(),
         outline_b=outline(),
         polygon=np.zeros(rows, _POINT),
+        meshes=own_meshes,
     )

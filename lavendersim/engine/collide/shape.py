@@ -48,13 +48,14 @@ class Shape(NamedTuple):
     rounded: bool = False  # whether the core is grown by a radius, `make_radius`
     curved: bool = False  # whether the core itself has a curved side
     polyhedral: bool = False  # whether its faces are polygons
+    concave: bool = False  # whether its kernels are those of its pieces, one at a time
     oriented: bool = True  # whether its body needs ORIENTED_BODY
     fields: tuple[Field, ...] = ()  # further columns of its body
 
     @property
     def convex(self) -> bool:
         """Whether it is the convex hull of a bounded core, grown by a radius."""
-        return self.rounded or self.kernels
+        return (self.rounded or self.kernels) and not self.concave
 
     def maker(self, name: str) -> Maker | None:
         """Return one of `MAKERS` from its file; None where it has none of that name."""

@@ -27,20 +27,21 @@ could bring together. Parts move with the velocity of their owner's centre.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..compile import inner, kernel
 from ..effects.fast_bodies import FAST
-from ..records import BOWL, DRUM, PLANE, ROPE_END, TOUCHING
+from ..records import BOWL, DRUM, MESH, PLANE, ROPE_END, TOUCHING
 from ..spec import Spec
-from ..vectors import Vec3, dot, plus_scaled, position
+from ..vectors import Vec3, dot, length, plus_scaled, position
 from .convex.separation import make_separation
 from .iteration_limits import needs_separation
+from .manifold.own_normals import point_normal
 from .manifold.point import copy_point, manifold_normal, place, put_manifold_normal
 from .pairs.convex import NEAREST
 from .records import put_position
 from .shape_kernels import make_radius
-from .shapes import has_cavity
+from .shapes import has_cavity, has_mesh
 
 ANY_MARGIN = 1e100  # [m]
 # Newton's steps: a few for an impact; a graze halves what is left in each, and 1e-9 of 1 m is 30.
@@ -177,6 +178,46 @@ def move_to_start(point, impact, n, along):
     place(point, plus_scaled(point, 0.5 * (phi - point.phi), n), phi, point.feature)
 
 
+def make_swept_mesh(spec: Spec, manifold: Any) -> Any:
+    """Return `kernel(kind, a, b, d, margin, scratch) -> (count, t)`, see `make_swept_manifold`.
+
+    The distance to a mesh is no convex function of the way, but it changes by no more than the way:
+    t <- t + gap/|d|. Each point has its own normal. What meets nothing has the points of its start.
+    """
+    if not has_mesh(spec):
+        return None
+
+    def swept_mesh(kind, a, b, d, margin, scratch):
+        points, start, far = scratch.manifold.points, position(b), length(d)
+        t, gap = 0.0, 0.0
+        for _ in range(ADVANCES):
+            found = manifold(kind, a, b, (1.0 - t) * far + TOUCHING, scratch)
+            gap = ANY_MARGIN
+            for k in range(found):
+                gap = min(gap, points[k].phi)
+            # Written so that a NaN ends it.
+            if not (gap > TOUCHING and gap < ANY_MARGIN and t < 1.0):
+                break
+            t = min(t + (gap - 0.5 * TOUCHING) / far, 1.0)
+            put_position(b, plus_scaled(start, t, d))
+        else:
+            scratch.not_converged[0].advance += 1
+        if not gap <= TOUCHING:
+            t = 0.0
+            put_position(b, start)
+        count = manifold(kind, a, b, margin, scratch)
+        put_position(b, start)
+        if t > 0.0:
+            for k in range(count):
+                n = point_normal(scratch.manifold, k)
+                phi = points[k].phi + max(-t * dot(d, n), 0.0)
+                middle = plus_scaled(points[k], 0.5 * (phi - points[k].phi), n)
+                place(points[k], middle, phi, points[k].feature)
+        return count, t
+
+    return kernel(swept_mesh, spec)
+
+
 def make_swept_manifold(spec: Spec, manifold):
     """Return `kernel(kind, a, b, d, margin, scratch) -> (count, t)`.
 
@@ -185,8 +226,12 @@ def make_swept_manifold(spec: Spec, manifold):
     TOUCHING at least, see above. The rows of a and b are left as they were.
     """
     find_impact, gap_at = make_find_impact(spec, manifold), make_gap(spec, manifold)
+    meshes, swept_mesh = has_mesh(spec), make_swept_mesh(spec, manifold)
 
     def swept_manifold(kind, a, b, d, margin, scratch):
+        if meshes:
+            if a.shape == MESH:
+                return swept_mesh(kind, a, b, d, margin, scratch)
         points, normal = scratch.manifold.points, scratch.manifold.normal
         start = position(b)
         impact = find_impact(kind, a, b, d, scratch)

@@ -14,6 +14,7 @@ from lavendersim.experiment.models.shapes import (
     CAVITIES,
     SIMPLE,
     SOLIDS,
+    SURFACES,
     TURNED,
     Orientation,
     Shape,
@@ -40,6 +41,11 @@ _OF_MOVING = ("velocity", "angular_velocity")
 _OF_MOVABLE = ("mass", "density", "inertia", *(key.name for key in BODY_KEYS if key.of_movable))
 OF_PRESCRIBED = tuple(key.name for key in BODY_KEYS if key.of_prescribed)
 _OF_PLACES = ("position", "release", "orientation")
+_PLACES = {  # what the position is of, of shapes without mass
+    "bowl": "[m] of its centre",
+    "drum": "[m] of a point of its axis",
+    **dict.fromkeys(SURFACES, "[m] of the origin of its frame"),
+}
 STATIC_HINT = "a body that never moves has fixed: true"
 
 
@@ -104,8 +110,8 @@ class _Matter(declared("Matter", _MatterOwn, BODY_KEYS), _MatterOwn):  # type: i
         kind = at.get("shape", "kind").text
         if kind == "plane":
             _plane_rules(at)
-        elif kind in CAVITIES:
-            _cavity_rules(at, kind)
+        elif kind in (*CAVITIES, *SURFACES):
+            _massless_rules(at, kind)
         elif kind in SOLIDS:
             if "position" in cls.model_fields:  # a body that stands alone
                 _exactly_one(at, ("position", "release"), "[m], or a release above a plane")
@@ -125,7 +131,8 @@ class Body(_Matter):
     """One rigid body. Planes are static; a movable body has exactly one of mass and density."""
 
     shape: Shape = Field(
-        description="plane, sphere, box, capsule, cylinder, ellipsoid, hull, compound, bowl or drum"
+        description="plane, sphere, box, capsule, cylinder, ellipsoid, hull, compound, bowl, "
+        "drum, mesh or height_field"
     )
     position: Position | None = Field(
         default=None,
@@ -206,11 +213,9 @@ def _plane_rules(at: Place) -> None:
         at.refuse(mark, f"{key}: {at} is a plane; {has}")
 
 
-def _cavity_rules(at: Place, kind: str) -> None:
+def _massless_rules(at: Place, kind: str) -> None:
     if at.written("position") is None:
-        at.lacks(
-            "position", "[m] of its centre" if kind == "bowl" else "[m] of a point of its axis"
-        )
+        at.lacks("position", _PLACES[kind])
     constrained = [key for key in _CONSTRAIN if at.get(key).is_true]
     always = f"a {kind}, which is fixed or has its motion prescribed"
     if at.get("fixed").content is False:

@@ -13,6 +13,7 @@ from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from lavendersim.cell.shapes import PRIMITIVES, Bowl, Drum, Plane, Primitive
+from lavendersim.experiment.models.meshes import HeightField, Mesh
 from lavendersim.quantities.chosen_kind import ByKind
 from lavendersim.quantities.kinds import kind_of
 from lavendersim.quantities.model import ConfigModel
@@ -72,8 +73,9 @@ SIMPLE: Final[tuple[type[Primitive | Polyhedral], ...]] = (
     Hull,
 )
 KINDS: Final = tuple(kind_of(model) for model in SIMPLE)
-SOLIDS: Final = (*KINDS, "compound")  # all but planes and cavities
+SOLIDS: Final = (*KINDS, "compound")  # all but planes, cavities and surfaces
 CAVITIES: Final = tuple(kind_of(model) for model in (Bowl, Drum))
+SURFACES: Final = tuple(kind_of(model) for model in (Mesh, HeightField))
 # Those whose principal axes are not those of their frame.
 TURNED: Final = tuple(kind for kind in SOLIDS if kind not in map(kind_of, PRIMITIVES))
 
@@ -125,7 +127,11 @@ class Compound(ConfigModel):
 
 if TYPE_CHECKING:
     Solid = Primitive | Polyhedral | Compound
-    Shape = Plane | Primitive | Polyhedral | Compound | Bowl | Drum
+    Shape = Plane | Primitive | Polyhedral | Compound | Bowl | Drum | Mesh | HeightField
 else:
     Solid = Union[(*SIMPLE, Compound)]
-    Shape = Annotated[Union[(Plane, Solid, Bowl, Drum)], ByKind(), OrName()]  # noqa: UP007
+    Shape = Annotated[
+        Union[(Plane, Solid, Bowl, Drum, Mesh, HeightField)],  # noqa: UP007
+        ByKind(),
+        OrName(),
+    ]

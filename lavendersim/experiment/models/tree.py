@@ -96,7 +96,7 @@ def immovable(body: Node, *, prescribed: bool) -> str | None:
         return "a plane"
     own = prescribes_motion(body) if prescribed else None
     kind = body.get("shape", "kind").text
-    if kind in ("bowl", "drum") and not prescribes_motion(body):
+    if kind in ("bowl", "drum", "mesh", "height_field") and not prescribes_motion(body):
         return f"a {kind}"
     return own or ("fixed" if body.get("fixed").is_true else None)
 

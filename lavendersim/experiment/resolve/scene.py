@@ -7,10 +7,11 @@ from typing import Any
 
 from lavendersim.cell.body import CellBody
 from lavendersim.cell.scene import CellForce, CellScene
-from lavendersim.cell.shapes import Cavity, CellShape, Plane
+from lavendersim.cell.shapes import Cavity, CellMesh, CellShape, Plane
 from lavendersim.cell.shared_parts import shared
 from lavendersim.engine.effects import BODY_KEYS, SCENE_KEYS, TurnOf
 from lavendersim.experiment.models.bodies import ArrangedBody, Body
+from lavendersim.experiment.models.meshes import HeightField, Mesh
 from lavendersim.experiment.models.scene import Force, Scene
 from lavendersim.experiment.models.tree import (
     ARRANGEMENTS,
@@ -25,6 +26,7 @@ from lavendersim.experiment.resolve.gravity import gravity_vector
 from lavendersim.experiment.resolve.placement import below, released_position
 from lavendersim.experiment.resolve.shape import quaternion_of, resolve_shape
 from lavendersim.experiment.resolve.surface_pairs import surface_of
+from lavendersim.experiment.resolve.surfaces import resolve_surface
 from lavendersim.geometry.quaternions import IDENTITY, Quaternion, product, to_body, to_world
 from lavendersim.geometry.vectors import unit
 from lavendersim.quantities.quantity import Vector3
@@ -49,7 +51,7 @@ def resolve_scene(scene: Scene, timestep: Fraction, duration: float) -> tuple[Ce
         if arrangement.first is not None:
             with below(*ARRANGEMENTS, name, "first"):
                 first = CellBody.of(**_matter(arrangement.first, scene))
-        assert not isinstance(one.shape, Plane | Cavity)
+        assert not isinstance(one.shape, Plane | Cavity | CellMesh)
         places = centres(arrangement, one.shape, one.orientation)
         turns = turns_of(arrangement)
         for number, position in enumerate(places, start=1):
@@ -105,7 +107,7 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> dict[str, Any]:
     """Return the values of a body that stands at the origin; its velocities are as written."""
     surface = surface_of(body.surface, scene)
     prescribed = any(getattr(body, key) for key in PRESCRIBE_MOTION)
-    fixed = body.fixed or prescribed or isinstance(body.shape, Plane | Cavity)
+    fixed = body.fixed or prescribed or isinstance(body.shape, Plane | Cavity | Mesh | HeightField)
     orientation, axes = quaternion_of(body.orientation), IDENTITY
     mass: float | None = None
     inertia: Vector3 | None = None
@@ -114,6 +116,9 @@ def _matter(body: Body | ArrangedBody, scene: Scene) -> dict[str, Any]:
         shape = body.shape.model_copy(update={"normal": unit(body.shape.normal)})
     elif isinstance(body.shape, Cavity):
         shape = body.shape
+    elif isinstance(body.shape, Mesh | HeightField):
+        with below("shape"):
+            shape = resolve_surface(body.shape)
     else:
         with below("shape"):
             shape, volume, (x, y, z), axes = resolve_shape(body.shape)

@@ -16,8 +16,10 @@ from lavendersim.figures.thumbnail import (
     FIXED,
     _hull,
     _outlines,
+    colour_of,
     corners_of,
     grounds_of,
+    parts_of,
     thumbnail,
     view_of,
 )
@@ -156,3 +158,17 @@ def test_the_outline_of_an_ellipsoid_is_as_round_as_a_dot() -> None:
         outline = _hull(on_unit_ball[:, seen])
         chords = (outline + np.roll(outline, 1, axis=0)) / 2.0
         assert np.linalg.norm(chords, axis=1).min() >= np.cos(np.pi / 72) - 1e-15
+
+
+def test_a_mesh_is_drawn_by_its_triangles_and_a_very_fine_one_by_its_outline() -> None:
+    corners = [[-1, -1, 0], [1, -1, 0], [1, 1, 0.5], [-1, 1, 0.5]]
+    mesh = {"kind": "mesh", "vertices": corners, "triangles": [[0, 1, 2], [0, 2, 3]]}
+    ground = {"shape": mesh, "fixed": True}
+    one = log({"ground": ground, "it": BALL}, [[0, 0, 0], [0, 0, 1]], [[0, 0, 0], [1, 0, 1]])
+    _, colours, _ = _outlines(one, *view_of(one))
+    assert colours.count(FIXED) == 2
+    shape = one.config.scene.bodies["ground"].shape
+    assert [len(part) for part in parts_of(shape)] == [3, 3]
+    fine = shape.model_copy(update={"triangles": shape.triangles * 1000})
+    assert [len(part) for part in parts_of(fine)] == [4]
+    assert (colour_of(shape), colour_of(fine)) == (FIXED, AROUND)

@@ -45,3 +45,16 @@ def test_a_cavity_is_drawn_as_what_it_is_around() -> None:
     assert (bowl.kind, bowl.bounding_radius, drum.bounding_radius) == ("bowl", 2.0, 2.0)
     assert [one.shape.kind for one in (*bowl.pieces, *drum.pieces)] == ["sphere", "cylinder"]
     assert [one.shape.radius for one in (*bowl.pieces, *drum.pieces)] == [2.0, 2.0]
+
+
+def test_a_mesh_is_drawn_by_its_triangles() -> None:
+    mesh = {"kind": "mesh", "vertices": [[0, 0, 0], [3, 0, 0], [3, 4, 0]], "triangles": [[0, 1, 2]]}
+    ground, _ = shapes(made_cell({"it": {"shape": mesh, "fixed": True}, "ball": {"shape": BALL}}))
+    assert (ground.kind, ground.fixed, ground.pieces, ground.bounding_radius) == (
+        "mesh",
+        True,
+        (),
+        5,
+    )
+    assert ground.mesh is not None
+    assert ground.mesh.triangles == ((0, 1, 2),)

@@ -152,3 +152,12 @@ def test_a_cavity_is_drawn_by_bars_between_points_of_its_wall(kind: str) -> None
             place = centre + turn @ (0.0, 0.0, end * float(size["length"]))
             away = np.linalg.norm(place if kind == "bowl" else place[:2])
             assert away == pytest.approx(2.0, abs=1e-14)
+
+
+def test_a_mesh_is_drawn_by_the_sides_of_its_triangles() -> None:
+    corners = [[0, 0, 0], [3, 0, 0], [3, 4, 0], [0, 4, 0]]
+    bars = drawn({"kind": "mesh", "vertices": corners, "triangles": [[0, 1, 2], [0, 2, 3]]})
+    assert {tag for tag, *_ in bars} == {"cylinder"}
+    assert sorted(float(size["length"]) for _, size, *_ in bars) == [3, 3, 4, 4, 5]
+    middles = sorted(tuple(centre[:2]) for _, _, centre, _ in bars)
+    assert middles == [(0.0, 2.0), (1.5, 0.0), (1.5, 2.0), (1.5, 4.0), (3.0, 2.0)]

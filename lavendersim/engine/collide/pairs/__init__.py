@@ -26,6 +26,11 @@ def inside(cavity: str, b: str, file: str) -> ShapePair:
     return ShapePair(f"{b}_{cavity}", (cavity, b), f"{file}_cavity", own_normals=True, inside=True)
 
 
+def on_mesh(b: str) -> ShapePair:
+    """Return the pair of a mesh and a convex shape, whose points have normals of their own."""
+    return ShapePair(f"{b}_mesh", ("mesh", b), f"{b}_mesh", own_normals=True)
+
+
 def smooth(a: str) -> ShapePair:
     """Return the pair of a shape with an ellipsoid: Newton's method behind GJK and EPA."""
     return ShapePair(f"ellipsoid_{a}", (a, "ellipsoid"), "ellipsoid_convex")
@@ -71,6 +76,7 @@ DECLARED = (
             ("ellipsoid", "ellipsoid"),
         )
     ),
+    *map(on_mesh, ("sphere", "box", "capsule", "cylinder", "hull", "ellipsoid")),
 )
 
 

@@ -18,6 +18,8 @@ from ...records import (
     ELLIPSOID,
     HULL,
     HULL_BODY,
+    MESH,
+    MESH_BODY,
     PLANE,
     SPHERE,
 )
@@ -35,6 +37,7 @@ DECLARED = (
     Shape("ellipsoid", ELLIPSOID, kernels=True, rounded=True, curved=True),
     Shape("bowl", BOWL, oriented=False),
     Shape("drum", DRUM),  # its axis is the body's z
+    Shape("mesh", MESH, kernels=True, concave=True, fields=tuple(MESH_BODY)),
 )
 
 SHAPES = {
@@ -54,6 +57,11 @@ def shapes_in(spec: Spec) -> list[Shape]:
 def has_cavity(spec: Spec) -> bool:
     """Whether a body of `spec` may be inside another one."""
     return any(shape.name in CAVITIES for shape in shapes_in(spec))
+
+
+def has_mesh(spec: Spec) -> bool:
+    """Whether a body of `spec` may touch a mesh."""
+    return any(shape.kind == MESH for shape in shapes_in(spec))
 
 
 def make_is_inside(spec: Spec) -> tuple[bool, Any]:

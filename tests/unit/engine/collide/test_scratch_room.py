@@ -20,7 +20,7 @@ def arrays(value, name=""):
     if isinstance(value, np.ndarray):
         yield name, value
     elif isinstance(value, tuple):
-        for part in value._fields:
+        for part in getattr(value, "_fields", ()):  # () where there are no meshes
             yield from arrays(getattr(value, part), f"{name}.{part}")
 
 

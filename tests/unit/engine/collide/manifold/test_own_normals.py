@@ -18,9 +18,9 @@ from lavendersim.engine.collide.scratch import allocate_scratch
 BOTH = spec_of("box_plane", "sphere_bowl")
 
 
-def test_only_pairs_of_cavities_have_them() -> None:
+def test_only_pairs_of_cavities_and_meshes_have_them() -> None:
     for name, pair in SHAPE_PAIRS.items():
-        assert has_own_normals(spec_of(name)) == pair.inside
+        assert has_own_normals(spec_of(name)) == (pair.inside or "mesh" in pair.shapes)
     has_shared = interpreted(make_has_shared(BOTH))
     assert has_shared(SHAPE_PAIRS["box_plane"].kind)
     assert not has_shared(SHAPE_PAIRS["sphere_bowl"].kind)

@@ -1,0 +1,63 @@
+"""Resolving surfaces of triangles: checked vertices and triangles, of a height field its own."""
+
+from __future__ import annotations
+
+from lavendersim.cell.shapes import CellMesh
+from lavendersim.experiment.models.meshes import MOST_TRIANGLES, HeightField, Mesh
+from lavendersim.experiment.resolve.placement import SceneError
+from lavendersim.quantities.quantity import Vector3
+
+Triangles = tuple[tuple[int, int, int], ...]
+
+
+def resolve_surface(shape: Mesh | HeightField) -> CellMesh:
+    """Return a surface whose triangles hang together; raises SceneError, path from the shape."""
+    from lavendersim.geometry.triangle_mesh import MeshError, surface_of  # few scenes need it
+
+    if isinstance(shape, HeightField):
+        vertices, triangles = _of_heights(shape)
+    else:
+        vertices, triangles = shape.vertices, shape.triangles
+        for number, triangle in enumerate(triangles):
+            for corner, row in enumerate(triangle):
+                if row >= len(vertices):
+                    sentence = f"there are {len(vertices)} vertices, counted from 0; found {row}"
+                    raise SceneError(("triangles", number, corner), sentence)
+    try:
+        surface_of(vertices, triangles)
+    except MeshError as error:
+        where = ("triangles", error.triangle) if isinstance(shape, Mesh) else ("heights",)
+        raise SceneError(where, f"triangle {error.triangle}: {error}") from None
+    return CellMesh(kind="mesh", vertices=vertices, triangles=triangles)
+
+
+def _of_heights(field: HeightField) -> tuple[tuple[Vector3, ...], Triangles]:
+    """Return the points of the grid, x after x, and two triangles a cell.
+
+    Diagonals of neighbouring cells meet, or lean the other way: no direction is preferred.
+    """
+    rows, columns = len(field.heights), len(field.heights[0])
+    for number, row in enumerate(field.heights):
+        if len(row) != columns:
+            sentence = f"expected {columns} heights, as in the first row, found {len(row)}"
+            raise SceneError(("heights", number), sentence)
+    count = 2 * (rows - 1) * (columns - 1)
+    if count > MOST_TRIANGLES:
+        sentence = f"heights: expected at most {MOST_TRIANGLES} triangles, found {count}"
+        raise SceneError(("heights",), sentence)
+    dx, dy = field.spacing
+    vertices = tuple(
+        ((i - 0.5 * (rows - 1)) * dx, (j - 0.5 * (columns - 1)) * dy, height)
+        for i, row in enumerate(field.heights)
+        for j, height in enumerate(row)
+    )
+    triangles: list[tuple[int, int, int]] = []
+    for i in range(rows - 1):
+        for j in range(columns - 1):
+            a, b = i * columns + j, i * columns + j + 1
+            c, d = a + columns, b + columns
+            if (i + j) % 2 == 0:
+                triangles += [(a, c, d), (a, d, b)]
+            else:
+                triangles += [(a, c, b), (c, d, b)]
+    return vertices, tuple(triangles)

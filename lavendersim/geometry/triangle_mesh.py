@@ -1,0 +1,80 @@
+"""Surfaces of triangles: which hang together, by which sides, and what is no surface.
+
+Corners of a triangle turn left seen from outside: its normal is (b - a) x (c - a).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lavendersim.geometry.rotations import Floats
+
+# Least height of a triangle over its longest side, in its length [-]: normals have ten digits then.
+LEAST_HEIGHT = 1e-6
+Whole = np.ndarray  # int64
+
+
+class MeshError(ValueError):
+    """Triangles that make no surface; `triangle` is the row at fault."""
+
+    def __init__(self, triangle: int, sentence: str) -> None:
+        super().__init__(sentence)
+        self.triangle = triangle
+
+
+class TriangleSurface(NamedTuple):
+    """A surface of T triangles and V vertices."""
+
+    vertices: Floats  # (V, 3) [m]
+    triangles: Whole  # (T, 3)
+    normals: Floats  # (T, 3) unit
+    beyond: Whole  # (T, 3) triangle across the side from corner k to the next; -1: none
+
+
+def merged(vertices: Floats, triangles: Whole) -> tuple[Floats, Whole]:
+    """Return vertices each of which stands at a place of its own, and the triangles of them."""
+    places, rows = np.unique(vertices, axis=0, return_inverse=True)
+    return places, rows.reshape(-1)[triangles]
+
+
+def surface_of(vertices: ArrayLike, triangles: ArrayLike) -> TriangleSurface:
+    """Return a surface; raises MeshError where triangles have no area or are no surface.
+
+    vertices: (V, 3) [m]; vertices at one place are one. triangles: (T, 3) rows of them.
+    """
+    places, corners = merged(np.asarray(vertices, float), np.asarray(triangles, np.int64))
+    a, b, c = (places[corners[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    double = np.linalg.norm(across, axis=1)
+    longest = np.max([np.linalg.norm(v, axis=1) for v in (b - a, c - b, a - c)], axis=0)
+    thin = np.flatnonzero(~(double > LEAST_HEIGHT * longest**2))
+    if len(thin):
+        raise MeshError(int(thin[0]), "its corners lie on a line")
+    return TriangleSurface(places, corners, across / double[:, None], _beyond(corners))
+
+
+def _beyond(corners: Whole) -> Whole:
+    start, end = corners.reshape(-1), np.roll(corners, -1, axis=1).reshape(-1)
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    order = np.lexsort((high, low))
+    same = (np.diff(low[order]) == 0) & (np.diff(high[order]) == 0)
+    third = np.flatnonzero(same[1:] & same[:-1])
+    if len(third):
+        triangle = int(order[third[0] + 2]) // 3
+        raise MeshError(triangle, "it is the third triangle at one of its sides; expected two")
+    one, other = order[:-1][same], order[1:][same]
+    alike = np.flatnonzero(start[one] == start[other])
+    if len(alike):
+        k = alike[0]
+        triangle, neighbour = int(other[k]) // 3, int(one[k]) // 3
+        raise MeshError(
+            triangle,
+            f"its normal is opposite to that of triangle {neighbour}, beside it; expected all to "
+            "turn left seen from outside",
+        )
+    beyond = np.full(len(start), -1, np.int64)
+    beyond[one], beyond[other] = other // 3, one // 3
+    return beyond.reshape(-1, 3)

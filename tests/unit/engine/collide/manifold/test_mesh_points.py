@@ -1,0 +1,123 @@
+"""Which points of a mesh touch: of a floor of triangles those of its plane, of sharp edges all.
+
+A normal of a contact is that of a face, or lies between the normals of the faces around its edge.
+"""
+
+from __future__ import annotations
+
+import math
+
+import convex
+import numpy as np
+import pytest
+from mesh_contacts import BOX, KINDS, contacts, drawn, terrain, world
+from single_bodies import body, manifold
+
+from lavendersim.cell import CellMesh
+
+ORIGIN = np.zeros(3)
+# Nine triangles around two inner corners, thin ones among them, 4 m wide.
+FLOOR = CellMesh(
+    kind="mesh",
+    vertices=(
+        *((-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0), (0.1, 0.05, 0)),
+        *((0.13, 0.06, 0), (-0.4, 0.3, 0)),
+    ),
+    triangles=(
+        *((0, 1, 4), (1, 5, 4), (1, 2, 5), (2, 3, 5), (3, 6, 5), (6, 4, 5)),
+        *((3, 0, 6), (0, 4, 6)),
+    ),
+)
+RIDGE = 0.2  # height of the roof over its eaves, 1 m off [m]
+ROOF = CellMesh(
+    kind="mesh",
+    vertices=((-1, -1, 0), (0, -1, RIDGE), (1, -1, 0), (-1, 1, 0), (0, 1, RIDGE), (1, 1, 0)),
+    triangles=((0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4)),
+)
+VALLEY = ROOF.model_copy(update={"vertices": tuple((x, y, RIDGE - z) for x, y, z in ROOF.vertices)})
+
+
+def lying(kind: str, rng: np.random.Generator, mesh: CellMesh = FLOOR):
+    """Return a body near the middle, its hulls, and what touches within 0.1 m."""
+    b, hulls = drawn(kind, rng, np.array([*rng.uniform(-0.3, 0.3, 2), 0.15]))
+    return b, hulls, contacts(mesh, b, 0.1, hulls, at=ORIGIN)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_floor_of_triangles_touches_as_its_plane(kind: str) -> None:
+    rng = np.random.default_rng([3, *kind.encode()])
+    plane, touched = body("plane", (0.0, 0.0, 1.0), offset=0.0), 0
+    for _ in range(8):
+        b, hulls, (places, normals, phi, feature) = lying(kind, rng)
+        its = manifold(f"{kind}_plane", plane, b, 0.1, hulls)
+        np.testing.assert_array_equal(places, its.points)
+        np.testing.assert_array_equal(phi, its.phi)
+        np.testing.assert_array_equal(normals, np.tile((0.0, 0.0, 1.0), (len(phi), 1)))
+        assert len({*feature}) == len(feature)
+        touched += len(phi)
+    assert touched > 4
+
+
+def ball(place, radius: float = 0.1):
+    return body("sphere", (radius, 0.0, 0.0), place)
+
+
+def test_over_a_ridge_the_normal_lies_between_the_two_slopes() -> None:
+    steepest = math.sin(math.atan(RIDGE))
+    for aside in np.linspace(-0.05, 0.05, 21):
+        _, (n,), (phi,), _ = contacts(ROOF, ball((aside, 0.1, RIDGE + 0.12)), 0.2, at=ORIGIN)
+        edge = math.hypot(aside, 0.12)
+        if abs(aside) / edge < steepest - 1e-9:  # nearest to the ridge itself
+            np.testing.assert_allclose(n, (aside / edge, 0.0, 0.12 / edge), atol=1e-14)
+            assert phi == pytest.approx(edge - 0.1, abs=1e-15)
+        else:
+            assert abs(n[0]) == pytest.approx(steepest, abs=1e-14)
+
+
+def test_in_a_valley_both_slopes_touch_and_its_edge_never() -> None:
+    for aside in np.linspace(-0.02, 0.02, 9):
+        _, normals, phi, _ = contacts(VALLEY, ball((aside, 0.3, 0.11)), 0.05, at=ORIGIN)
+        steepest = math.sin(math.atan(RIDGE))
+        assert sorted(normals[:, 0]) == pytest.approx([-steepest, steepest], abs=1e-14)
+        level = (0.11 - RIDGE * abs(aside)) * math.cos(math.atan(RIDGE)) - 0.1
+        assert phi.min() == pytest.approx(level, abs=1e-15)
+
+
+def test_a_body_behind_a_surface_does_not_touch_it() -> None:
+    assert len(contacts(FLOOR, ball((0.3, 0.2, -0.05)), 0.2, at=ORIGIN)[2]) == 0
+    (phi,) = contacts(FLOOR, ball((0.3, 0.2, 0.05)), 0.2, at=ORIGIN)[2]
+    assert phi == pytest.approx(-0.05, abs=1e-15)
+
+
+def test_a_box_half_over_a_table_touches_at_the_tables_edge() -> None:
+    half, top = 0.1, 0.5
+    b = body("box", (half, half, half), (0.47, 0.1, top + half - 1e-6))
+    places, normals, phi, _ = contacts(BOX, b, 1e-3, at=ORIGIN)
+    np.testing.assert_array_equal(normals, np.tile((0.0, 0.0, 1.0), (4, 1)))
+    np.testing.assert_allclose(phi, -1e-6, atol=1e-15)
+    corners = [(x, y) for x in (0.37, 0.5) for y in (0.0, 0.2)]
+    found = places[np.lexsort(places[:, 1::-1].round(9).T)][:, :2]
+    np.testing.assert_allclose(found, corners, atol=2e-9)  # cuts reach as far as surfaces touch
+
+
+@pytest.mark.parametrize("kind", ["sphere", "box", "cylinder"])
+def test_no_normal_leads_into_a_face_beside_its_point(kind: str) -> None:
+    """For what is apart: no triangle with the point on it rises along the normal."""
+    rng = np.random.default_rng([9, *kind.encode()])
+    checked = 0
+    for _ in range(12):
+        mesh, turn = terrain(rng), convex.random_rotation(rng)
+        b, hulls = drawn(kind, rng, turn @ rng.uniform((-0.4, -0.4, 0.5), (0.4, 0.4, 0.8)))
+        places, normals, phi, _ = contacts(mesh, b, 0.3, hulls, at=ORIGIN, turn=turn)
+        for place, n, gap in zip(places, normals, phi, strict=True):
+            foot = place - 0.5 * gap * n
+            for triangle in world(mesh, ORIGIN, turn):
+                a, b_, c = triangle
+                weights, left, *_ = np.linalg.lstsq(
+                    np.column_stack([b_ - a, c - a]), foot - a, rcond=None
+                )
+                on = len(left) and left[0] < 1e-18 and min(*weights, 1.0 - sum(weights)) > -1e-9
+                if gap > 0.0 and on:
+                    assert ((triangle - foot) @ n).max() < 1e-7
+                    checked += 1
+    assert checked > 6

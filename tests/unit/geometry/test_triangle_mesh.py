@@ -1,0 +1,36 @@
+"""Triangles are a surface where they have area and meet in pairs that turn alike."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lavendersim.geometry.triangle_mesh import MeshError, merged, surface_of
+
+SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1)]
+
+
+def test_normals_and_what_lies_beyond_each_side() -> None:
+    surface = surface_of(np.array(SQUARE, float), np.array([(0, 1, 2), (0, 2, 3)]))
+    np.testing.assert_array_equal(surface.normals, [(0, 0, 1), (0, 0, 1)])
+    np.testing.assert_array_equal(surface.beyond, [(-1, -1, 1), (0, -1, -1)])
+
+
+def test_vertices_at_one_place_are_one() -> None:
+    places, triangles = merged(np.array([(0, 0, 0), (1, 0, 0), (0, 0, 0)], float), np.array([0, 2]))
+    assert len(places) == 2
+    assert triangles[0] == triangles[1]
+
+
+@pytest.mark.parametrize(
+    ("triangles", "row", "sentence"),
+    [
+        ([(0, 1, 2), (0, 1, 1)], 1, "on a line"),
+        ([(0, 1, 2), (1, 0, 3), (0, 1, 4)], 2, "the third triangle"),
+        ([(0, 1, 2), (0, 3, 2)], 1, "opposite to that of triangle 0"),
+    ],
+)
+def test_what_is_no_surface_is_named_by_its_triangle(triangles, row: int, sentence: str) -> None:
+    with pytest.raises(MeshError, match=sentence) as caught:
+        surface_of(np.array(SQUARE, float), np.array(triangles))
+    assert caught.value.triangle == row
