@@ -113,6 +113,7 @@ FORCED = {
     "broad_phase": "of thousands of pairs; here the tree is made for a few",
     "packed_sweeps": "of many bodies; here lanes are packed for a few",
     "problem_log": "few scenes can be written as FCLIB files: none is asked for",
+    "supernodes": "of hundreds of bodies; here envelopes are small",
     "velocity_log": "columns of states that others have",
 }
 EVERY = {effect.name for effect in EFFECTS} - {*NOT_DRAWN}

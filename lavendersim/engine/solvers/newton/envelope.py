@@ -47,6 +47,7 @@ class Envelope(NamedTuple):
     upper: np.ndarray  # (capacity,) entries above the diagonal by columns, as `values`; see `lu`
     inside: np.ndarray  # (contacts, 6) see `inside_cones`; (0, 6) where it is not used
     packed: Any = ()  # what sweeps between two calls work in, where they pack contacts
+    elimination: Any = ()  # see `supernodes`, where bodies may be eliminated in another order
 
 
 def allocate_envelope(
@@ -56,6 +57,7 @@ def allocate_envelope(
     packed: Any = (),
     upper: int = 0,
     inside: int = 0,
+    elimination: Any = (),
 ) -> Envelope:
     """Return the arrays for so many bodies, contacts and matrix entries.
 
@@ -80,6 +82,7 @@ def allocate_envelope(
         np.zeros(upper),
         np.zeros((inside, 6)),
         packed,
+        elimination,
     )
 
 
