@@ -6,7 +6,7 @@ opens, and the fixed point has no slope. So a round here has no shift: normal an
 impulses respond to velocities each by its own law (Alart and Curnier 1991),
     lambda_n = max(0, lambda_n^k - E w_n),    lambda_t = proj(lambda_t^k - E w_t),
 onto the disc of radius mu lambda_n, around the impulses lambda^k of the round before, with
-E = 1/(softness k) per row. As lambda_t follows lambda_n, M + J^T E' J is not symmetric (`halves`).
+E = 1/(softness k) per row. As lambda_t follows lambda_n, M + J^T E' J is not symmetric (`lu`).
 
 No function falls along such a step, and one that measured the imbalance would bar the way of what
 points in excess trade: steps are whole, a round is kept by its residual. Softness falls from round
@@ -32,7 +32,7 @@ from .coulomb_response import (
 )
 from .envelope import DOF
 from .factor import make_solve_lu
-from .halves import make_assemble_and_factorise
+from .matrix import make_assemble_and_factorise
 from .method import make_accept, make_keep, make_restore, make_set_impulse
 from .minimise import (
     make_assemble_mass,

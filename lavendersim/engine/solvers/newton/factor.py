@@ -68,7 +68,7 @@ def make_lay_out(spec: Spec) -> Any:
     return kernel(lay_out, spec)
 
 
-class Block(NamedTuple):
+class BlockPlace(NamedTuple):
     """Where a block is: its entry i, j at `base` + i `row` + j `column`, rows growing longer."""
 
     base: int
@@ -84,11 +84,11 @@ def entry(block, i, j):
 
 
 def make_block_at(spec: Spec) -> Any:
-    """Return `kernel(workspace, p, q) -> Block`, block row p and block column q <= p."""
+    """Return `kernel(workspace, p, q) -> BlockPlace`, block row p and block column q <= p."""
 
     def in_envelope(workspace, p, q):
         first = workspace.first[p]
-        return Block(workspace.start[DOF * p] + DOF * (q - first), DOF * (p - first), 1, 1)
+        return BlockPlace(workspace.start[DOF * p] + DOF * (q - first), DOF * (p - first), 1, 1)
 
     in_envelope = kernel(in_envelope, spec)
     if not eliminates(spec):
@@ -110,7 +110,7 @@ def make_block_at(spec: Spec) -> Any:
                 else:
                     high = middle
             place = low - begin
-        return Block(nodes.panel[s] + DOF * (q - first) * wide + DOF * place, 1, wide, 0)
+        return BlockPlace(nodes.panel[s] + DOF * (q - first) * wide + DOF * place, 1, wide, 0)
 
     in_panel = kernel(in_panel, spec)
 

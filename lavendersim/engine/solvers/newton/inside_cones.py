@@ -39,7 +39,7 @@ from .cone_scaling import (
 )
 from .envelope import DOF, OF_A, OF_B, T1, T2
 from .factor import make_solve_lu
-from .halves import make_assemble_and_factorise
+from .matrix import make_assemble_and_factorise
 from .method import make_keep, make_restore, make_set_impulse
 from .minimise import make_assemble_mass, make_body_of, make_directional_derivative
 from .response import make_fill_rows

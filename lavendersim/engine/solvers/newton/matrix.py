@@ -13,7 +13,7 @@ from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import DOF, OF_A, OF_B, SCALED, T1, T2, WX, WY, WZ
-from .factor import entry, make_block_at, make_entries
+from .factor import entry, make_block_at, make_entries, make_factorise_lu
 from .response import make_fill_rows
 from .torques import make_add_torque_block
 
@@ -94,3 +94,25 @@ def make_assemble(spec: Spec, stiffness: Any, torques: bool = True, scale: Any =
                 add_torque_block(contact, a, b, workspace)
 
     return kernel(assemble, spec)
+
+
+def make_assemble_and_factorise(
+    spec: Spec, stiffness: Any, scales: tuple[Any, Any], torques: bool = True
+) -> Any:
+    """Return `kernel(contacts, count, size, workspace) -> whether` there is a factor.
+
+    Of M + J^T E' J, see `matrix.make_assemble`; scales: by E', and by E' transposed.
+    """
+    scale, transposed = scales
+    assemble = make_assemble(spec, stiffness, torques, scale)
+    assemble_transposed = make_assemble(spec, stiffness, torques, transposed)
+    entries_of, factorise_lu = make_entries(spec), make_factorise_lu(spec)
+
+    def assemble_and_factorise(contacts, count, size, workspace):
+        assemble_transposed(contacts, count, size, workspace)
+        for k in range(entries_of(size, workspace)):
+            workspace.upper[k] = workspace.values[k]
+        assemble(contacts, count, size, workspace)
+        return factorise_lu(size, workspace)
+
+    return kernel(assemble_and_factorise, spec)

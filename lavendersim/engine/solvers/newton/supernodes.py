@@ -81,7 +81,7 @@ def allocate_elimination(bodies: int, contacts: int, entries: int) -> Eliminatio
 def panel_work(width, border):
     """Return the multiplications that a supernode of so many bodies takes."""
     own, rows = float(DOF * width), float(DOF * (width + border))
-    # sum over pivots of half the square of what is right of them
+    # The sum over pivots of n^2 / 2, n of what is right of each, as an integral.
     rest = rows - own
     return (rows * rows * rows - rest * rest * rest) / 6.0
 

@@ -9,13 +9,12 @@ import pytest
 from interpreted import interpreted, records
 from test_envelope import DOF, GRAPHS, contacts_of
 
-from lavendersim.engine.solvers.newton import envelope, factor, supernodes
+from lavendersim.engine.solvers.newton import envelope, supernodes
 from lavendersim.engine.solvers.newton.envelope import allocate_envelope
 from lavendersim.engine.solvers.newton.supernodes import (
     CHOSEN,
     COUNT,
     ENTRIES,
-    SHORT,
     allocate_elimination,
 )
 from lavendersim.engine.spec import Spec
@@ -97,24 +96,8 @@ def test_panels_hold_all_that_elimination_fills(graph: str) -> None:
     needed = np.triu(filled_in(workspace, size, pairs, fixed))
     assert not (needed & ~held).any()
     assert nodes.outcome[ENTRIES] == entries
-    # A sum of squares against an integral of them: apart by half a square per supernode's edge.
+    # The sum of n^2 / 2 against its integral.
     assert work == pytest.approx(counted, rel=0.3)
-
-
-def test_a_board_costs_less_than_its_envelope() -> None:
-    # Rows of an envelope are n bodies long, their cost n^4; of nested halves it grows with n^3.
-    _, _, work, by_envelope = eliminated(*grid(12), capacity=100_000)
-    _, _, larger, by_larger = eliminated(*grid(24), capacity=1_000_000)
-    assert larger / by_larger < 0.7 * work / by_envelope < 0.7
-
-
-def test_a_star_is_eliminated_from_its_ends() -> None:
-    # The middle first would tie all ends to each other; last, it ties none.
-    bodies, pairs = 9, [(0, k) for k in range(1, 9)]
-    workspace, _, _, _ = eliminated(bodies, pairs)
-    assert workspace.position[0] >= bodies - 2  # the last end has the same degree
-    blocks = 2 * (bodies - SHORT) + SHORT * SHORT  # the last of them may have joined
-    assert workspace.elimination.nodes.outcome[ENTRIES] <= DOF * DOF * blocks
 
 
 def test_what_is_found_of_a_graph_stays_while_it_stands() -> None:
@@ -136,31 +119,3 @@ def test_what_is_found_of_a_graph_stays_while_it_stands() -> None:
     assert find(size, workspace) == work
     number(size, workspace)
     assert (workspace.visited == visited).all()
-
-
-@pytest.mark.parametrize("capacity", [DOF * DOF * 5, DOF * DOF * 40])
-def test_what_has_no_room_is_infinitely_dear(capacity: int) -> None:
-    _, _, work, _ = eliminated(*BOARD, capacity=capacity)
-    assert work == inf
-
-
-@pytest.mark.parametrize(("n", "chosen"), [(5, 0), (20, 1)])
-def test_an_order_is_looked_for_where_an_envelope_is_large(n: int, chosen: int) -> None:
-    bodies, pairs = grid(n)
-    rows = contacts_of(pairs)
-    workspace = workspace_of(bodies, len(rows), 500_000)
-    outcome = workspace.elimination.nodes.outcome
-    size, entries, cost = interpreted(factor.make_lay_out(SPEC))(
-        records(rows), len(rows), workspace
-    )
-    plain = allocate_envelope(bodies, len(rows), 500_000)
-    _, of_envelope, work = lay_out(records(rows), len(rows), plain)
-    assert size == bodies
-    assert outcome[CHOSEN] == chosen
-    assert (work > factor.FEWEST_MULTIPLICATIONS) == bool(chosen)
-    if chosen:
-        assert cost == workspace.elimination.work[0] / factor.SIDE_BY_SIDE < work
-        assert entries == outcome[ENTRIES] < of_envelope
-    else:
-        assert (entries, cost) == (of_envelope, float(work))
-        assert (workspace.position == plain.position).all()
