@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from math import inf
 
 import numpy as np
 
@@ -27,6 +28,9 @@ SWEEPS = 10_000
 AUTO_SWEEPS = 1_000_000
 # What `auto` may spend [ns], `budget`: at least, and by contacts.
 AUTO, AUTO_BY_CONTACT = 3e9, 6e6
+# Of so many contacts and more `auto` sweeps first, for so much of it [-]: the cost of a sweep grows
+# with the number of contacts, that of a factor by more.
+MANY, MOST_OF_IT = 2000, 0.8
 
 
 def _newton(search: Search) -> None:
@@ -45,6 +49,8 @@ def _interior_point(search: Search) -> None:
 
 
 def _whatever_does_it(search: Search) -> None:
+    if search.problem.contacts >= MANY:
+        search.sweep(inf, MOST_OF_IT)
     search.open()
     search.go_on(STRATEGIES)
 

@@ -116,7 +116,7 @@ SCENES = {
     "pile_1000": Large(pile(25), 720),
     "spheres_1000": Large(spheres(10, 10), 180),
     "spheres_1000_landing_solved": Large(solved(spheres(10, 10)), 10),
-    "spheres_1000_solved": Large(solved(spheres(10, 10)), 180),
+    "spheres_1000_solved": Large(solved(spheres(10, 10)), 120),
     "spheres_10240": Large(spheres(32, 32), 180),
     "spheres_30000": Large(spheres(60, 50), 180),
 }
