@@ -75,7 +75,7 @@ ASKED = {
     "newton": {
         "solvers/adaptive": "its rounds are a part of this solver",
         "effects/projection": "pushes that joints share are found by the same method",
-        "effects/supernodes": "an order for its factor, where it is called for",
+        "effects/supernodes": "an order for its factor, where one may be required",
         "solvers/newton/factor": "joints are projected by its rounds with other solvers, too",
         "effects/least_norm": "chooses among what it leaves undetermined, by its factors",
     },

@@ -23,7 +23,7 @@ FEWEST_BODIES = 200
 
 
 def decide(facts: Facts) -> Decision:
-    """On where bodies are many and Newton's method may be called for."""
+    """On where bodies are many and Newton's method may be required."""
     movable = sum(body.movable for body in facts.bodies)
     if movable < FEWEST_BODIES:
         return Decision(False, f"{movable} movable bodies, fewer than {FEWEST_BODIES}")

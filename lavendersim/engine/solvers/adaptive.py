@@ -75,7 +75,9 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
         inside = contacts if row_terms(spec).frictional else 0
         sweeping = () if packed is None else packed
         factor = allocate_factor(spec, bodies, contacts, entries)
-        return allocate_envelope(bodies, contacts, entries, sweeping, upper, inside, factor)
+        return allocate_envelope(
+            bodies, contacts, entries, sweeping, upper, inside, elimination=factor
+        )
     return no_workspace(spec, bodies, contacts) if packed is None else Swept(packed)
 
 

@@ -57,6 +57,7 @@ def allocate_envelope(
     packed: Any = (),
     upper: int = 0,
     inside: int = 0,
+    *,
     elimination: Any = (),
 ) -> Envelope:
     """Return the arrays for so many bodies, contacts and matrix entries.

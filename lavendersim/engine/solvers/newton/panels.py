@@ -11,26 +11,53 @@ being reordered.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
 from ...compile import inner
 from .envelope import DOF, dot_rows
 from .supernodes import COUNT
 
 
+class Pivots(NamedTuple):
+    """Six rows of a panel, one after the other, and the rows that they take their factors from."""
+
+    half: np.ndarray
+    other: np.ndarray
+    diagonal: np.ndarray
+    at: int  # where the first of the rows starts in both halves
+    stride: int  # entries of a row
+    row: int  # of the first pivot in `diagonal`
+
+
+class Destination(NamedTuple):
+    """Six rows that change, from a column of the panel on."""
+
+    entries: np.ndarray
+    at: int  # where the first of them has that column
+    stride: int
+
+
 @inner
-def _reduce_pair(target, one, two, source, at, stride, count, other, a, b, diagonal, d):
-    # Two rows of the target, from places `one` and `two` on, less six rows of the source from `at`
-    # on; a, b: places of the two rows' factors in the other half; d: of the pivots.
+def _reduce_pair(destination, pivots, column, i):
+    # Rows i and i + 1 of a destination less what the pivots take from them.
+    half, other, diagonal = pivots.half, pivots.other, pivots.diagonal
+    stride, d, at = pivots.stride, pivots.row, pivots.at + column
+    a, b, count = at + i, at + i + 1, pivots.stride - column
+    k2, k3, k4, k5 = 2 * stride, 3 * stride, 4 * stride, 5 * stride
     a0, b0 = other[a] / diagonal[d], other[b] / diagonal[d]
     a1, b1 = other[a + stride] / diagonal[d + 1], other[b + stride] / diagonal[d + 1]
-    k2, k3, k4, k5 = 2 * stride, 3 * stride, 4 * stride, 5 * stride
     a2, b2 = other[a + k2] / diagonal[d + 2], other[b + k2] / diagonal[d + 2]
     a3, b3 = other[a + k3] / diagonal[d + 3], other[b + k3] / diagonal[d + 3]
     a4, b4 = other[a + k4] / diagonal[d + 4], other[b + k4] / diagonal[d + 4]
     a5, b5 = other[a + k5] / diagonal[d + 5], other[b + k5] / diagonal[d + 5]
-    first, second = target[one : one + count], target[two : two + count]
-    s0, s1 = source[at : at + count], source[at + stride : at + stride + count]
-    s2, s3 = source[at + k2 : at + k2 + count], source[at + k3 : at + k3 + count]
-    s4, s5 = source[at + k4 : at + k4 + count], source[at + k5 : at + k5 + count]
+    one = destination.at + i * destination.stride
+    two = one + destination.stride
+    first, second = destination.entries[one : one + count], destination.entries[two : two + count]
+    s0, s1 = half[at : at + count], half[at + stride : at + stride + count]
+    s2, s3 = half[at + k2 : at + k2 + count], half[at + k3 : at + k3 + count]
+    s4, s5 = half[at + k4 : at + k4 + count], half[at + k5 : at + k5 + count]
     for j in range(count):
         x, y = first[j], second[j]
         x -= a0 * s0[j]
@@ -49,36 +76,33 @@ def _reduce_pair(target, one, two, source, at, stride, count, other, a, b, diago
 
 
 @inner
-def _reduce_block(target, place, step, half, other, at, stride, column, diagonal, d):
-    # Six rows of the target, the first at `place`, each `step` after the one before: less what the
-    # six pivots whose rows start at `at` take from columns `column` on.
-    count = stride - column
+def _reduce_block(destination, pivots, column):
+    # All six rows of a destination.
     for i in range(0, DOF, 2):
-        _reduce_pair(
-            target, place + i * step, place + (i + 1) * step, half, at + column, stride, count,
-            other, at + column + i, at + column + i + 1, diagonal, d,
-        )  # fmt: skip
+        _reduce_pair(destination, pivots, column, i)
 
 
 @inner
-def _reduce_within(half, other, at, stride, column, i, diagonal, d):
-    # Row i of six pivots less those before it.
-    own = at + i * stride
+def _reduce_within(pivots, column, i):
+    # Row i of six pivots less those before it; they stand from `column` on in the panel.
+    half, stride = pivots.half, pivots.stride
+    own = pivots.at + i * stride
     for k in range(i):
-        row = at + k * stride
-        factor = other[row + column + i] / diagonal[d + k]
+        row = pivots.at + k * stride
+        factor = pivots.other[row + column + i] / pivots.diagonal[pivots.row + k]
         for j in range(column + i, stride):
             half[own + j] -= factor * half[row + j]
 
 
 @inner
-def _scatter(half, base, wide, rows, length, m, end, nodes):
-    # += six rows, of which six columns go to each of the members from m on.
+def _scatter(destination, nodes, m, end, rows):
+    # += six rows, of which six columns go to each of the members from m to the end.
+    half, length = destination.entries, DOF * (end - m)
     for k in range(m, end):
-        column = base + DOF * nodes.place[nodes.members[k]]
+        column = destination.at + DOF * nodes.place[nodes.members[k]]
         source = DOF * (k - m)
         for i in range(DOF):
-            at = column + i * wide
+            at = column + i * destination.stride
             for j in range(DOF):
                 half[at + j] += rows[i * length + source + j]
 
@@ -102,13 +126,12 @@ def _push(s, half, other, diagonal, workspace):
         for j in range(DOF * length):
             rows[j] = 0.0
         for k in range(width):
-            _reduce_block(
-                rows, 0, length, half, other, panel + DOF * k * stride, stride, column,
-                diagonal, DOF * (nodes.first[s] + k),
-            )  # fmt: skip
+            d = DOF * (nodes.first[s] + k)
+            pivots = Pivots(half, other, diagonal, panel + DOF * k * stride, stride, d)
+            _reduce_block(Destination(rows, 0, length), pivots, column)
         wide = DOF * (nodes.begin[owner + 1] - nodes.begin[owner])
         base = nodes.panel[owner] + DOF * (p - nodes.first[owner]) * wide
-        _scatter(half, base, wide, rows, length, begin + m, begin + count, nodes)
+        _scatter(Destination(half, base, wide), nodes, begin + m, begin + count, rows)
 
 
 @inner
@@ -127,18 +150,15 @@ def factorise_panels(half, other, both, workspace):
             column, d = DOF * m, DOF * (first + m)
             for k in range(m):
                 at, before = panel + DOF * k * stride, DOF * (first + k)
-                _reduce_block(
-                    half, own + column, stride, half, other, at, stride, column, diagonal, before
-                )
+                pivots = Pivots(half, other, diagonal, at, stride, before)
+                _reduce_block(Destination(half, own + column, stride), pivots, column)
                 if both:
-                    _reduce_block(
-                        other, own + column, stride, other, half, at, stride, column, diagonal,
-                        before,
-                    )  # fmt: skip
+                    pivots = Pivots(other, half, diagonal, at, stride, before)
+                    _reduce_block(Destination(other, own + column, stride), pivots, column)
             for i in range(DOF):
-                _reduce_within(half, other, own, stride, column, i, diagonal, d)
+                _reduce_within(Pivots(half, other, diagonal, own, stride, d), column, i)
                 if both:
-                    _reduce_within(other, half, own, stride, column, i, diagonal, d)
+                    _reduce_within(Pivots(other, half, diagonal, own, stride, d), column, i)
                 pivot = half[own + i * stride + column + i]
                 diagonal[d + i] = pivot
                 if not (abs(pivot) > 0.0 if both else pivot > 0.0):

@@ -41,7 +41,7 @@ EVERY = {**GRAPHS, "board": BOARD, "alone on a floor": ALONE}
 def workspace_of(bodies: int, contacts: int, capacity: int):
     """Return the arrays of both factors."""
     elimination = allocate_elimination(bodies, contacts, capacity)
-    return allocate_envelope(bodies, contacts, capacity, (), capacity, 0, elimination)
+    return allocate_envelope(bodies, contacts, capacity, upper=capacity, elimination=elimination)
 
 
 def eliminated(bodies: int, pairs, fixed=(), capacity: int | None = None):
