@@ -32,7 +32,7 @@ from .iteration import Iteration
 from .newton.alart_curnier import make_alart_curnier
 from .newton.begin_again import make_begin_again
 from .newton.envelope import allocate_envelope
-from .newton.factor import allocate_factor, eliminates
+from .newton.factor import allocate_factor
 from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, make_step_cost
 from .newton.rounds import SOFTEST
 from .packed.late import FIRST, Packing, make_sweep_late, packs_late
@@ -44,9 +44,8 @@ from .sweep import make_sweep
 LOOK = 8
 # Sweeps that follow the last call of Newton's method.
 LAST = 2
-# One call of Newton's method is worth no more than so many sweeps; where a factor may go by
-# supernodes, than so many: what stands is found once.
-MOST_SWEEPS, MOST_OF_MANY = 3000.0, 12000.0
+# One call of Newton's method is worth no more than so many sweeps.
+MOST_SWEEPS = 3000.0
 # An end that the sweeps left would not reach is worth so many.
 WORTH = 300.0
 # Steps on Coulomb's law itself, to one of the convex rounds before; each takes twice its time.
@@ -141,7 +140,6 @@ def make(spec: Spec) -> Iteration:
 def _make_proceed(spec: Spec, put_back: Any) -> Any:
     newton, residual = make_newton(spec), make_residual(spec)
     step_cost = make_step_cost(spec)
-    most_sweeps = MOST_OF_MANY if eliminates(spec) else MOST_SWEEPS
     chooses = has_hook(spec, "choose_impulses")
     packs, slides = put_back is not None, row_terms(spec).frictional
     alart_curnier: Any = make_alart_curnier(spec)
@@ -165,10 +163,10 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
         look = sweeps + pause
         if carry.earlier > 0.0 or ends:
             # Sweeps still needed at the rate of the last LOOK of them.
-            needed = most_sweeps
+            needed = MOST_SWEEPS
             if aim > 0.0 and greatest < carry.earlier and not ends:
                 rate = log(greatest / carry.earlier) / pause
-                needed = min(log(aim / greatest) / rate, most_sweeps)
+                needed = min(log(aim / greatest) / rate, MOST_SWEEPS)
             if sweeps + needed > params.sweeps:
                 needed = max(needed, WORTH)
             if unknowns < 0:
