@@ -107,13 +107,13 @@ NOT_DRAWN = {
     "hertz_contact": "no compliance may be beside it; see tests/physics/test_hertz_contacts.py",
     "capture_in_sweeps": "a mistake that is made on purpose, which breaks laws",
     "error_control": "ends a run where no substep is short enough; `test_error_control.py`",
+    "supernodes": "of hundreds of bodies; here envelopes are small; see `test_panels.py`",
 }
 # Those whose kernels run since the engine has them, though no scene is large enough, or asks.
 FORCED = {
     "broad_phase": "of thousands of pairs; here the tree is made for a few",
     "packed_sweeps": "of many bodies; here lanes are packed for a few",
     "problem_log": "few scenes can be written as FCLIB files: none is asked for",
-    "supernodes": "of hundreds of bodies; here envelopes are small",
     "velocity_log": "columns of states that others have",
 }
 EVERY = {effect.name for effect in EFFECTS} - {*NOT_DRAWN}
