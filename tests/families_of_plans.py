@@ -33,7 +33,10 @@ from lavendersim.experiment.cell import Cell
 from lavendersim.scene.plan import CHOICES, Plan
 from tests import scenes_of_families as scenes
 
-NEVER_ADDED = {"error_control", "impact_order", "packed_sweeps", "residual_log", "rotation"}
+NEVER_ADDED = {
+    *("error_control", "impact_order", "packed_sweeps", "residual_log", "rotation"),
+    "supernodes",
+}
 BY_EFFECTS = CHOICES.index("sleeping")  # a choice that says no more than that the effect is there
 ROOT = Path(__file__).parents[1]
 CONFIGS = ROOT / "configs"

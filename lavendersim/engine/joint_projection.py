@@ -27,9 +27,9 @@ def make_project_joints(spec: Spec) -> Any:
     system: with the pseudo-velocities that the pushes of its contacts give; workspace: of the
     solver; tolerance [m].
     """
-    from .solvers.newton.method import FEWEST_STEPS, make_newton, step_cost
+    from .solvers.newton.method import FEWEST_STEPS, make_newton, make_step_cost
 
-    newton, terms = make_newton(spec), row_terms(spec)
+    newton, step_cost, terms = make_newton(spec), make_step_cost(spec), row_terms(spec)
     friction, compliant, bounded = terms.frictional, terms.compliant, terms.bounded
 
     def exchange(contact):

@@ -72,8 +72,19 @@ class Search:
 
         Not from the best: that would end where it did before.
         """
+        reached_before = self.sweep(sweeps)
+        if not self.over:
+            x, reached = newton_steps(self.p, from_impulses(self.p, self.here), self.budget)
+            if reached < reached_before:
+                self.move(to_impulses(self.p, x), reached)
+
+    def sweep(self, sweeps: float, share: float = 1.0) -> float:
+        """Sweep from here; return the residual.
+
+        share: of what may be spent yet, at most [-].
+        """
         cost = SWEEP_COST * len(self.problem.row)
-        within = min(sweeps, self.budget.steps_left, self.budget.cost_left / cost)
+        within = min(sweeps, self.budget.steps_left, share * self.budget.cost_left / cost)
         swept = solve_by_kernel(
             SWEEPER,
             self.problem,
@@ -85,10 +96,7 @@ class Search:
         residuals = list(swept.history[1:]) if self.history else []
         self.budget.spend(swept.sweeps, cost * swept.sweeps, residuals)
         self.move(swept.impulses, swept.scaled)
-        if not self.over:
-            x, reached = newton_steps(self.p, from_impulses(self.p, self.here), self.budget)
-            if reached < swept.scaled:
-                self.move(to_impulses(self.p, x), reached)
+        return swept.scaled
 
     def rounds(self) -> None:
         """Make rounds from the best."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from math import inf
 
 import numpy as np
 
@@ -25,8 +26,11 @@ Solver = Callable[[ContactProblem, float, int, "np.ndarray | None", bool], Solut
 # Sweeps, or steps, at most where no limit is given. `auto` is limited by `AUTO` instead.
 SWEEPS = 10_000
 AUTO_SWEEPS = 1_000_000
-# What `auto` may spend [ns], `budget`.
-AUTO = 3e9
+# What `auto` may spend [ns], `budget`: at least, and by contacts.
+AUTO, AUTO_BY_CONTACT = 3e9, 6e6
+# Of so many contacts and more `auto` sweeps first, for so much of it [-]: the cost of a sweep grows
+# with the number of contacts, that of a factor by more.
+MANY, MOST_OF_IT = 2000, 0.8
 
 
 def _newton(search: Search) -> None:
@@ -45,12 +49,19 @@ def _interior_point(search: Search) -> None:
 
 
 def _whatever_does_it(search: Search) -> None:
+    if search.problem.contacts >= MANY:
+        search.sweep(inf, MOST_OF_IT)
     search.open()
     search.go_on(STRATEGIES)
 
 
-def _by_search(plan: Callable[[Search], None], cost: float = float("inf")) -> Solver:
-    """Return the solver that makes a plan; it counts sweeps and steps alike as `sweeps`."""
+def _by_search(
+    plan: Callable[[Search], None], least: float = float("inf"), by_contact: float = 0.0
+) -> Solver:
+    """Return the solver that makes a plan; it counts sweeps and steps alike as `sweeps`.
+
+    least, by_contact: what it may spend [ns], whichever is more.
+    """
 
     def solver(
         problem: ContactProblem,
@@ -59,6 +70,7 @@ def _by_search(plan: Callable[[Search], None], cost: float = float("inf")) -> So
         start: np.ndarray | None = None,
         history: bool = False,
     ) -> Solution:
+        cost = max(least, by_contact * problem.contacts)
         search = Search(problem, tolerance, sweeps, start, history, cost)
         plan(search)
         return search.solution()
@@ -72,7 +84,7 @@ SOLVERS: dict[str, Solver] = {
     **{name: partial(solve_by_kernel, name) for name in KERNELS if KERNELS[name].solves_matrix},
     "semismooth_newton": _by_search(_newton),
     "interior_point": _by_search(_interior_point),
-    "auto": _by_search(_whatever_does_it, AUTO),
+    "auto": _by_search(_whatever_does_it, AUTO, AUTO_BY_CONTACT),
 }
 
 

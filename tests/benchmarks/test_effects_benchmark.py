@@ -20,6 +20,7 @@ OTHER_LAWS = {
         "impact_energy",
         "sliding_stops",
         "overlooked_points",
+        "supernodes",
     ),
 }
 # Nor does the default choose these.

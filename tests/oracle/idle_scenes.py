@@ -214,6 +214,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "hertz_contact": ("flying brick",),
     "warm_start": ("cold balls",),
     "newton": ("single ball",),
+    "supernodes": ("adaptive balls",),
     "least_norm": ("single ball",),
     "packed_sweeps": ("adaptive balls",),
     "projection": ("balls",),

@@ -39,7 +39,7 @@ SECTIONS = {
     "contact-at-the-middle-of-the-step": ("contact_midpoint",),
     "torques-at-a-contact": ("torsional_friction", "rolling_friction"),
     "warm-start": ("warm_start",),
-    "newtons-method": ("newton",),
+    "newtons-method": ("newton", "supernodes"),
     "packed-sweeps": ("packed_sweeps",),
     "undetermined-forces": ("least_norm",),
     "projection": ("projection",),

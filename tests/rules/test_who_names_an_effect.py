@@ -75,9 +75,12 @@ ASKED = {
     "newton": {
         "solvers/adaptive": "its rounds are a part of this solver",
         "effects/projection": "pushes that joints share are found by the same method",
+        "effects/supernodes": "an order for its factor, where one may be required",
+        "solvers/newton/factor": "joints are projected by its rounds with other solvers, too",
         "effects/least_norm": "chooses among what it leaves undetermined, by its factors",
     },
     "packed_sweeps": {"solvers/packed/late": "from which contact on this solver has them"},
+    "supernodes": {"solvers/newton/factor": "which of two factors a contact graph gets"},
     "least_norm": {"scene/plan": "how many bodies it is affordable for divides plans"},
     "impact_order": {
         "effects/overlooked_points": "where it is off, no part leaves a row out",

@@ -65,6 +65,7 @@ NAMES: Final = (
     "hertz_contact",
     "warm_start",
     "newton",
+    "supernodes",
     "packed_sweeps",
     "least_norm",
     "projection",

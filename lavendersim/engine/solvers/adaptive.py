@@ -32,7 +32,8 @@ from .iteration import Iteration
 from .newton.alart_curnier import make_alart_curnier
 from .newton.begin_again import make_begin_again
 from .newton.envelope import allocate_envelope
-from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, step_cost
+from .newton.factor import allocate_factor
+from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, make_step_cost
 from .newton.rounds import SOFTEST
 from .packed.late import FIRST, Packing, make_sweep_late, packs_late
 from .packed.layout import PackedContacts, allocate_packed
@@ -72,7 +73,10 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> Any:
         upper = entries if row_terms(spec).frictional else 0
         inside = contacts if row_terms(spec).frictional else 0
         sweeping = () if packed is None else packed
-        return allocate_envelope(bodies, contacts, entries, sweeping, upper, inside)
+        factor = allocate_factor(spec, bodies, contacts, entries)
+        return allocate_envelope(
+            bodies, contacts, entries, sweeping, upper, inside, elimination=factor
+        )
     return no_workspace(spec, bodies, contacts) if packed is None else Swept(packed)
 
 
@@ -135,6 +139,7 @@ def make(spec: Spec) -> Iteration:
 
 def _make_proceed(spec: Spec, put_back: Any) -> Any:
     newton, residual = make_newton(spec), make_residual(spec)
+    step_cost = make_step_cost(spec)
     chooses = has_hook(spec, "choose_impulses")
     packs, slides = put_back is not None, row_terms(spec).frictional
     alart_curnier: Any = make_alart_curnier(spec)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from closed_forms import BY_HAND, cube
 
-from lavendersim.problems import search
+from lavendersim.problems import search, solve
 from lavendersim.problems.interior_point import STRATEGIES
 from lavendersim.problems.scaled_problem import Reached, from_impulses
 from lavendersim.problems.search import GROWTH, LATER, LATER_SWEEPS, MARGIN, OPENING, Search
@@ -118,3 +118,28 @@ def test_the_start_of_rounds_is_the_best(monkeypatch: pytest.MonkeyPatch) -> Non
     one.move(np.zeros((4, 3)), 9.0 * one.least)
     one.rounds()
     np.testing.assert_array_equal(starts[0], from_impulses(one.p, best))
+
+
+def test_sweeps_alone_take_no_more_than_their_share() -> None:
+    one = begun("slides", tolerance=1e-12, cost=1e6)
+    before, left = one.least, one.budget.cost_left
+    reached = one.sweep(float("inf"), 0.25)
+    assert reached == one.least < before
+    assert one.budget.steps > 1
+    assert left - one.budget.cost_left <= 0.25 * left
+    made = one.budget.steps
+    one.sweep(3)
+    assert one.budget.steps <= made + 3
+
+
+@pytest.mark.parametrize(("many", "first"), [(4, "sweep"), (5, "open")])
+def test_auto_sweeps_first_where_contacts_are_many(
+    many: int, first: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken: list[str] = []
+    monkeypatch.setattr(solve, "MANY", many)  # a cube has four
+    for name in ("sweep", "open", "go_on"):
+        monkeypatch.setattr(Search, name, lambda *given, name=name: taken.append(name))
+    solve.SOLVERS["auto"](cube(BY_HAND["slides"][0]), 1e-9, 100)
+    assert taken[0] == first
+    assert taken[-2:] == ["open", "go_on"]

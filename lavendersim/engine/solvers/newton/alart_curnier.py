@@ -31,6 +31,7 @@ from .coulomb_response import (
     make_scale_transposed,
 )
 from .envelope import DOF
+from .factor import make_solve_lu
 from .kept_velocities import (
     LOST,
     OF_BEST,
@@ -39,7 +40,7 @@ from .kept_velocities import (
     make_put_velocities,
     make_speed,
 )
-from .lu import make_assemble_and_factorise, solve_lu
+from .matrix import make_assemble_and_factorise
 from .method import make_accept, make_keep, make_restore, make_set_impulse
 from .minimise import (
     make_assemble_mass,
@@ -82,6 +83,7 @@ def make_find_root(spec: Spec) -> Any:
     begin, gather = make_begin(spec), make_gather(spec, coulomb_impulse)
     directional_derivative = make_directional_derivative(spec)
     take_step, mixed = make_take_step(spec), row_terms(spec).frictionless
+    solve_lu = make_solve_lu(spec)
 
     def fastest(contacts, count):
         found = 0.0

@@ -19,6 +19,7 @@ from ...spec import Spec
 from ...spin_block import resists_turning
 from ..sweep import make_sweep
 from .alart_curnier import make_alart_curnier
+from .factor import eliminates
 from .inside_cones import LONG_STEPS, MOST, SHORT_STEPS, make_from_inside
 from .method import make_set_impulse
 from .rounds import STIFF_ENOUGH
@@ -30,6 +31,9 @@ FINISHING = 40.0
 SWEEPS, TURNS = 1000, 6
 # Turns at most where more is left than so many times what is enough.
 FEWER_TURNS, NEAR = 4, 10.0
+# Visits of a turn at most where bodies are many: what this solves is rare, and a large scene's
+# turns would take minutes.
+MOST_VISITS = 10_000_000
 # Columns of `Envelope.inside` behind those of `inside_cones`: the best impulses [N s]
 BEST_N, BEST_1, BEST_2 = range(3, 6)
 
@@ -68,6 +72,7 @@ def make_begin_again(spec: Spec) -> Any:
     residual, from_inside = make_residual(spec), make_from_inside(spec)
     alart_curnier, set_impulse = make_alart_curnier(spec), make_set_impulse(spec)
     are_cones, sweep = make_are_cones(spec), make_sweep(spec)
+    many = eliminates(spec)
 
     def keep(contacts, count, workspace):
         for c in range(count):
@@ -105,7 +110,12 @@ def make_begin_again(spec: Spec) -> Any:
                 steps, least = end_with_rounds(system, workspace, size, most, residuals, least)
                 made += steps
         for turn in range(TURNS):
-            if not least <= enough and (turn < FEWER_TURNS or least <= NEAR * enough):
+            affordable = not many or (SWEEPS << turn) * count <= MOST_VISITS
+            if (
+                affordable
+                and not least <= enough
+                and (turn < FEWER_TURNS or least <= NEAR * enough)
+            ):
                 for _ in range(SWEEPS << turn):
                     sweep(system, params)
                 steps, least = end_with_rounds(system, workspace, size, most, residuals, least)

@@ -48,6 +48,7 @@ class Envelope(NamedTuple):
     inside: np.ndarray  # (contacts, 6) see `inside_cones`; (0, 6) where it is not used
     kept: np.ndarray  # (2, bodies, 6) velocities, see `kept_velocities`
     packed: Any = ()  # what sweeps between two calls work in, where they pack contacts
+    elimination: Any = ()  # see `supernodes`, where bodies may be eliminated in another order
 
 
 def allocate_envelope(
@@ -57,6 +58,8 @@ def allocate_envelope(
     packed: Any = (),
     upper: int = 0,
     inside: int = 0,
+    *,
+    elimination: Any = (),
 ) -> Envelope:
     """Return the arrays for so many bodies, contacts and matrix entries.
 
@@ -82,6 +85,7 @@ def allocate_envelope(
         np.zeros((inside, 6)),
         np.zeros((2, bodies, DOF)),
         packed,
+        elimination,
     )
 
 

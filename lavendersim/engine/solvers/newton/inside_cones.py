@@ -38,7 +38,8 @@ from .cone_scaling import (
     velocity_inside,
 )
 from .envelope import DOF, OF_A, OF_B, T1, T2
-from .lu import make_assemble_and_factorise, solve_lu
+from .factor import make_solve_lu
+from .matrix import make_assemble_and_factorise
 from .method import make_keep, make_restore, make_set_impulse
 from .minimise import make_assemble_mass, make_body_of, make_directional_derivative
 from .response import make_fill_rows
@@ -139,6 +140,7 @@ def make_find_direction(spec: Spec) -> Any:
     velocity_of, cone_point = make_contact_velocity(spec), make_cone_point(spec)
     fill_rows, body_of = make_fill_rows(spec), make_body_of(spec)
     directional_derivative = make_directional_derivative(spec, torques=False)
+    solve_lu = make_solve_lu(spec)
 
     def direction(contact, velocities, aim):
         # Those of x and z, where the contact's velocity changes by `step` and more by slip.

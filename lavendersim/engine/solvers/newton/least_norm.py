@@ -23,7 +23,7 @@ from ...residual import make_residual
 from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
-from .envelope import DOF, OF_A, OF_B, T1, T2, factorise, lay_out, solve_factorised
+from .envelope import DOF, OF_A, OF_B, T1, T2
 from .faces import (
     OPEN,
     SLIDES,
@@ -33,6 +33,7 @@ from .faces import (
     make_find_face,
     make_turn_friction,
 )
+from .factor import make_factorise, make_lay_out, make_solve_factorised
 from .matrix import make_assemble
 from .method import make_restore, make_set_impulse
 from .minimise import make_assemble_mass, make_body_of, make_descend, make_directional_derivative
@@ -69,6 +70,7 @@ def make_begin(spec: Spec, stiffness: Any) -> Any:
     friction, compliant, bilateral = terms.frictional, terms.compliant, terms.bilateral
     fill_rows, body_of = make_fill_rows(spec), make_body_of(spec)
     assemble = make_assemble(spec, stiffness, torques=False)
+    factorise, solve_factorised = make_factorise(spec), make_solve_factorised(spec)
     directional_derivative = make_directional_derivative(spec, torques=False)
 
     def lean(contact, stiff, load):
@@ -158,7 +160,7 @@ def make_least_norm(spec: Spec) -> Any:
     stiffness, turn_friction = make_face_stiffness(spec), make_turn_friction(spec)
     begin = make_begin(spec, stiffness)
     descend = make_descend(spec, face_impulse, stiffness, torques=False)
-    set_impulse = make_set_impulse(spec)
+    set_impulse, lay_out = make_set_impulse(spec), make_lay_out(spec)
     restore_best = make_restore(spec, "best", set_impulse, torques=False)
     restore_start = make_restore(spec, "start", set_impulse, torques=False)
 

@@ -7,12 +7,8 @@ Without pivots: masses on the diagonal keep them from zero but where friction ja
 
 from __future__ import annotations
 
-from typing import Any
-
-from ...compile import inner, kernel
-from ...spec import Spec
+from ...compile import inner
 from .envelope import DOF, dot_rows, solve_lower
-from .matrix import make_assemble
 
 
 @inner
@@ -52,25 +48,3 @@ def solve_lu(bodies, workspace, x):
         known = x[row]
         for column in range(begin, row):
             x[column] -= upper[start[row] + column - begin] * known
-
-
-def make_assemble_and_factorise(
-    spec: Spec, stiffness: Any, scales: tuple[Any, Any], torques: bool = True
-) -> Any:
-    """Return `kernel(contacts, count, size, workspace) -> whether` there is a factor.
-
-    Of M + J^T E' J, see `matrix.make_assemble`; scales: by E', and by E' transposed.
-    """
-    scale, transposed = scales
-    assemble = make_assemble(spec, stiffness, torques, scale)
-    assemble_transposed = make_assemble(spec, stiffness, torques, transposed)
-
-    def assemble_and_factorise(contacts, count, size, workspace):
-        entries = workspace.start[DOF * size - 1] + DOF * size - DOF * workspace.first[size - 1]
-        assemble_transposed(contacts, count, size, workspace)
-        for k in range(entries):
-            workspace.upper[k] = workspace.values[k]
-        assemble(contacts, count, size, workspace)
-        return factorise_lu(size, workspace)
-
-    return kernel(assemble_and_factorise, spec)

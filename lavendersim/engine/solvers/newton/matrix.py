@@ -1,6 +1,7 @@
 """The matrix of Newton's method, M + J^T E' J, assembled over the bodies.
 
-It lies in the envelope (`envelope`): block rows of bodies, each from its first neighbour on.
+It lies in the envelope (`envelope`), block rows of bodies, each from its first neighbour on, or in
+the panels of supernodes (`factor`).
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
 from .envelope import DOF, OF_A, OF_B, SCALED, T1, T2, WX, WY, WZ
+from .factor import entry, make_block_at, make_entries, make_factorise_lu
 from .response import make_fill_rows
 from .torques import make_add_torque_block
 
@@ -34,7 +36,7 @@ def make_scale_rows(spec: Spec) -> Any:
 
 
 def make_assemble(spec: Spec, stiffness: Any, torques: bool = True, scale: Any = None):
-    """Return `kernel(contacts, count, size, workspace)`: fill the envelope with M + J^T E' J.
+    """Return `kernel(contacts, count, size, workspace)`: fill the matrix with M + J^T E' J.
 
     stiffness: kernel(contact) -> E'. torques: they respond, too. scale: kernel(rows, source, h)
     that scales rows by E'; None: by a symmetric one.
@@ -43,36 +45,34 @@ def make_assemble(spec: Spec, stiffness: Any, torques: bool = True, scale: Any =
     directions = 3 if friction else 1
     scale_rows = make_scale_rows(spec) if scale is None else scale
     spins, add_torque_block = torques and resists_turning(spec), make_add_torque_block(spec)
+    block_at, entries_of = make_block_at(spec), make_entries(spec)
 
     def add_block(workspace, p, q, rows_p, rows_q):
         # += rows_p^T E' rows_q on block row p and block column q <= p; E' rows_q: the scaled rows.
-        values, start, rows = workspace.values, workspace.start, workspace.rows
-        offset = DOF * (q - workspace.first[p])
+        values, rows = workspace.values, workspace.rows
+        block = block_at(workspace, p, q)
         for i in range(DOF):
-            base = start[DOF * p + i] + offset
+            row = entry(block, i, 0)
             for j in range(i + 1 if p == q else DOF):
                 total = 0.0
                 for k in range(directions):
                     total += rows[rows_p + k, i] * rows[SCALED + k, j]
-                values[base + j] += total
+                values[row + j * block.column] += total
 
     add_block = kernel(add_block, spec)
 
     def assemble(contacts, count, size, workspace):
-        values, start, mass = workspace.values, workspace.start, workspace.mass
-        last = DOF * size - 1
-        for k in range(start[last] + last - DOF * workspace.first[size - 1] + 1):
+        values = workspace.values
+        for k in range(entries_of(size, workspace)):
             values[k] = 0.0
         for p in range(size):
-            offset = DOF * (p - workspace.first[p])
-            own = mass[p]
+            block, own = block_at(workspace, p, p), workspace.mass[p]
             for i in range(3):
-                values[start[DOF * p + i] + offset + i] = own.m
-            values[start[DOF * p + WX] + offset + WX] = own.xx
-            base = start[DOF * p + WY] + offset
-            values[base + WX], values[base + WY] = own.xy, own.yy
-            base = start[DOF * p + WZ] + offset
-            values[base + WX], values[base + WY], values[base + WZ] = own.xz, own.yz, own.zz
+                values[entry(block, i, i)] = own.m
+            values[entry(block, WX, WX)] = own.xx
+            values[entry(block, WY, WX)], values[entry(block, WY, WY)] = own.xy, own.yy
+            values[entry(block, WZ, WX)], values[entry(block, WZ, WY)] = own.xz, own.yz
+            values[entry(block, WZ, WZ)] = own.zz
         for c in range(count):
             contact = contacts[c]
             h = stiffness(contact)
@@ -94,3 +94,25 @@ def make_assemble(spec: Spec, stiffness: Any, torques: bool = True, scale: Any =
                 add_torque_block(contact, a, b, workspace)
 
     return kernel(assemble, spec)
+
+
+def make_assemble_and_factorise(
+    spec: Spec, stiffness: Any, scales: tuple[Any, Any], torques: bool = True
+) -> Any:
+    """Return `kernel(contacts, count, size, workspace) -> whether` there is a factor.
+
+    Of M + J^T E' J, see `matrix.make_assemble`; scales: by E', and by E' transposed.
+    """
+    scale, transposed = scales
+    assemble = make_assemble(spec, stiffness, torques, scale)
+    assemble_transposed = make_assemble(spec, stiffness, torques, transposed)
+    entries_of, factorise_lu = make_entries(spec), make_factorise_lu(spec)
+
+    def assemble_and_factorise(contacts, count, size, workspace):
+        assemble_transposed(contacts, count, size, workspace)
+        for k in range(entries_of(size, workspace)):
+            workspace.upper[k] = workspace.values[k]
+        assemble(contacts, count, size, workspace)
+        return factorise_lu(size, workspace)
+
+    return kernel(assemble_and_factorise, spec)

@@ -3,7 +3,7 @@
     g(v) = M (v - v^k) - J^T (lambda(v) - lambda^k)
 is the gradient of a convex function of the velocities, because every projected impulse lambda(v)
 (`response`) is a projection. Its Hessian M + J^T E' J is sparse over bodies and positive
-definite however redundant the contacts are. Each step factorises it (`envelope`) and is shortened,
+definite however redundant the contacts are. Each step factorises it (`factor`) and is shortened,
 or lengthened, to where the slope along it is nearly gone.
 """
 
@@ -17,7 +17,8 @@ from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
 from ...step_terms import step_terms
-from .envelope import DOF, OF_A, OF_B, T1, T2, WX, WY, WZ, factorise, solve_factorised
+from .envelope import DOF, OF_A, OF_B, T1, T2, WX, WY, WZ
+from .factor import make_factorise, make_solve_factorised
 from .matrix import make_assemble
 from .response import make_fill_rows, make_projected_impulse, make_stiffness
 from .rounds import (
@@ -234,6 +235,7 @@ def make_descend(spec: Spec, projected_impulse: Any, stiffness: Any, torques: bo
     multiply = make_multiply_mass(spec)
     at_minimum, slow = kernel(is_at_minimum, spec), kernel(is_slow, spec)
     gains_nothing = kernel(is_idle, spec)
+    factorise, solve_factorised = make_factorise(spec), make_solve_factorised(spec)
 
     def slope_at(contacts, count, length):
         # The contacts' part of the derivative along the step; it grows with the length.

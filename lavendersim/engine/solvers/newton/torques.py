@@ -18,6 +18,7 @@ from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import make_apply_spin, resists_turning
 from .envelope import DOF, WX, WY, WZ
+from .factor import entry, make_block_at
 
 
 def make_start_torques(spec: Spec) -> Any:
@@ -176,29 +177,25 @@ class Symmetric(NamedTuple):
 
 
 @inner
-def _add(workspace, p, q, scale, t):
-    # += scale T on the turning of block row p and block column q <= p; p = q: its lower half.
-    values, start = workspace.values, workspace.start
-    offset = DOF * (q - workspace.first[p])
-    x = start[DOF * p + WX] + offset
-    y = start[DOF * p + WY] + offset
-    z = start[DOF * p + WZ] + offset
-    values[x + WX] += scale * t.xx
-    values[y + WX] += scale * t.xy
-    values[y + WY] += scale * t.yy
-    values[z + WX] += scale * t.xz
-    values[z + WY] += scale * t.yz
-    values[z + WZ] += scale * t.zz
-    if p != q:
-        values[x + WY] += scale * t.xy
-        values[x + WZ] += scale * t.xz
-        values[y + WZ] += scale * t.yz
+def _add(values, block, diagonal, scale, t):
+    # += scale T on the turning of a block; diagonal: its lower half alone.
+    values[entry(block, WX, WX)] += scale * t.xx
+    values[entry(block, WY, WX)] += scale * t.xy
+    values[entry(block, WY, WY)] += scale * t.yy
+    values[entry(block, WZ, WX)] += scale * t.xz
+    values[entry(block, WZ, WY)] += scale * t.yz
+    values[entry(block, WZ, WZ)] += scale * t.zz
+    if not diagonal:
+        values[entry(block, WX, WY)] += scale * t.xy
+        values[entry(block, WX, WZ)] += scale * t.xz
+        values[entry(block, WY, WZ)] += scale * t.yz
 
 
 def make_add_torque_block(spec: Spec) -> Any:
     """Return `kernel(contact, a, b, workspace)`: matrix += S^T E' S, E' = -d psi / d omega."""
     terms = row_terms(spec)
     torsional, rolling = terms.torsional, terms.rolling
+    block_at = make_block_at(spec)
 
     def add_torque_block(contact, a, b, workspace):
         h_nn, h_11, h_12, h_22 = 0.0, 0.0, 0.0, 0.0
@@ -234,12 +231,13 @@ def make_add_torque_block(spec: Spec) -> Any:
                 h_nn * ny * nz + ay * pz + by * qz,
                 h_nn * nz * nz + az * pz + bz * qz,
             )
+            values = workspace.values
             if a >= 0:
-                _add(workspace, a, a, 1.0, t)
+                _add(values, block_at(workspace, a, a), True, 1.0, t)
             if b >= 0:
-                _add(workspace, b, b, 1.0, t)
+                _add(values, block_at(workspace, b, b), True, 1.0, t)
             if a >= 0 and b >= 0:
-                _add(workspace, max(a, b), min(a, b), -1.0, t)
+                _add(values, block_at(workspace, max(a, b), min(a, b)), False, -1.0, t)
 
     return kernel(add_torque_block, spec) if resists_turning(spec) else None
 

@@ -1,0 +1,37 @@
+"""The benchmark of large scenes makes the scenes that it names, and says what it counts."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.benchmarks import large_scenes
+from tests.benchmarks.large_scenes import SCENES, Large, measure, solved, spheres
+from tests.benchmarks.prepared_contacts import pile
+from tests.benchmarks.scenes import case
+
+
+@pytest.mark.parametrize(
+    ("name", "bodies"),
+    [("pyramid_1275", 1275), ("wall_1000", 1000), ("tower_300", 300), ("spheres_10240", 10240)],
+)
+def test_scenes_have_as_many_bodies_as_their_names_say(name: str, bodies: int) -> None:
+    scene = case(SCENES[name].text, record=False).scene()
+    assert int((scene.bodies["inv_m"] > 0.0).sum()) == bodies
+
+
+def test_every_step_of_a_heap_is_solved_where_that_is_asked_for() -> None:
+    text = spheres(10, 10)
+    left, asked = (
+        case(one, record=False).plan.decisions["supernodes"] for one in (text, solved(text))
+    )
+    assert not left.on
+    assert asked.on
+
+
+def test_a_row_counts_the_steps_that_were_solved() -> None:
+    row = measure("few", Large(pile(1), 100), 4)  # a plan that packed_sweeps compiles, too
+    assert row["bodies"] == 40
+    assert row["solved"] == 4
+    assert row["worst_residual"] <= large_scenes.TOLERANCE
+    found = {"scenes": [row], "steps": 4, "environment": {"processor": "one", "cores": 1}}
+    assert f"{'4/4':>9}".strip() in large_scenes.table(found)
