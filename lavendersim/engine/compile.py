@@ -20,6 +20,7 @@ from lavendersim.garbage import uncollected
 
 from . import kernel_store
 from .compile_options import OPTIONS
+from .identity import IN_VECTORS, SEPARATE
 from .spec import Spec
 
 Kernel: Any = None
@@ -72,13 +73,15 @@ def call(kernel: Any, *arguments: Any) -> Any:
 ROUND = frozenset({"sphere_plane", "sphere_sphere"})
 
 
-def separate(kernel: Any, spec: Spec) -> Any:
+def separate(kernel: Any, spec: Spec, vectors: bool = False) -> Any:
     """Return a kernel that is optimised with what it calls and without its callers.
 
     For what is large, is called a few times a step and is the same in many plans (`separate_code`).
+    vectors: its loops are made loops of vectors (`optimisation`), to the same bits.
     """
-    if Kernel is not None and isinstance(kernel, Kernel) and not ROUND.issuperset(spec.shape_pairs):
-        kernel.separate = True
+    alone = vectors or not ROUND.issuperset(spec.shape_pairs)
+    if Kernel is not None and isinstance(kernel, Kernel) and alone:
+        kernel.separate = IN_VECTORS if vectors else SEPARATE
     return kernel
 
 

@@ -53,16 +53,20 @@ def identity(kernel: Any) -> Identity:
     """Return the identity of a kernel; raises UnidentifiableError where it calls what has none."""
     known = _identities.get(kernel)
     if known is None:
-        known = _identities[kernel] = _identity_of(kernel.py_func, is_separate(kernel))
+        known = _identities[kernel] = _identity_of(kernel.py_func, how_separate(kernel))
     return known
 
 
-def is_separate(kernel: Any) -> bool:
-    """Whether a kernel is optimised without its callers."""
-    return bool(getattr(kernel, "separate", False))
+# A part is optimised without its callers, or so that its loops are loops of vectors, too.
+SEPARATE, IN_VECTORS = 1, 2
 
 
-def _identity_of(function: Any, separate: bool) -> Identity:
+def how_separate(kernel: Any) -> int:
+    """Return how a kernel is optimised without its callers, 0 where it is with them."""
+    return int(getattr(kernel, "separate", 0))
+
+
+def _identity_of(function: Any, separate: int) -> Identity:
     code = function.__code__
     digest, names, stores = _of_code(code)
     named = f"{function.__module__}.{function.__qualname__}"  # symbols carry it

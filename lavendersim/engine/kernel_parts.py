@@ -40,14 +40,14 @@ class KernelPart:
         raises: bool,
         *,
         places: tuple[str, ...] = (),
-        separate: bool = False,
+        separate: int = 0,
     ) -> None:
         self.symbol, self.returns, self.bitcode, self.called = symbol, returns, bitcode, called
         self.key = key  # names the file it is kept in; empty where it has none
         self.raises = raises  # whether it may return with an exception
         self.places = places  # of fields that its own code reads or writes (`field_places`)
-        # Whether it is optimised without its callers; none whose code cannot be kept is.
-        self.separate = separate and bool(key) and is_plain(returns)
+        # Whether, and how, it is optimised without its callers; none whose code cannot be kept is.
+        self.separate = separate if key and is_plain(returns) else 0
         self._reload_init: set[Any] = set()
 
     def _ensure_finalized(self) -> None:

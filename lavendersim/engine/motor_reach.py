@@ -21,8 +21,9 @@ from .vectors import Vec3, cross, dot, minus, plus
 
 # A motor drives by its most that gives this share of it [-].
 SPENDS = 1.0 - 1e-9
-# So many rows may be solved again in a step, for its motors.
-SPENT = 512
+# What a step may spend on its parts, in rows that are solved again, and what one of these counts
+# for at most: scenes of any size may have some, which leave impacts what they need.
+SPENT, MOST_OF_A_PART = 512, 16
 
 
 def reaches_speeds(spec: Spec) -> bool:
@@ -79,7 +80,8 @@ def make_first_reach(spec: Spec) -> Any:
 
     def first_reach(state, count, params, counters):
         first, left = NEVER, params.dt
-        if counters.spent + 1 + count > SPENT:
+        share = min(1 + count, MOST_OF_A_PART)
+        if counters.spent + share > SPENT:
             return first
         for c in range(count):
             contact = state.contacts[c]
@@ -93,7 +95,7 @@ def make_first_reach(spec: Spec) -> Any:
                     if SHORT * params.timestep < t < left - SHORT * params.timestep:
                         first = min(first, t)
         if first < left:
-            counters.spent += 1 + count
+            counters.spent += share
         return first
 
     return kernel(first_reach, spec)

@@ -5,7 +5,8 @@ estimate says so, and takes these through them in turn: of a hundred parts that 
 each is looked at a dozen times. Here what is merged is known beforehand, and what remains is taken
 through LLVM's passes for functions once: two thirds of the time, and as more is merged, steps of
 small scenes take 4 to 15 % less. Nothing is made a loop of vectors; lanes of contacts say what they
-are by their types (`solvers/packed/lanes`).
+are by their types (`solvers/packed/lanes`). Separate parts that live by such loops, as dense panels
+of a factor, go through LLVM's own pipeline.
 """
 
 from __future__ import annotations
@@ -28,8 +29,10 @@ _CALL = re.compile(r"call [^@\n]*" + _SYMBOL)
 _FUNCTION = re.compile(r"^define [^@\n]*" + _SYMBOL + r".*?\n(.*?)^}", re.MULTILINE | re.DOTALL)
 
 
-def optimise(module: Any, parts: set[str], codegen: Any) -> None:
+def optimise(module: Any, parts: set[str], codegen: Any, *, vectors: bool = False) -> None:
     """Optimise a module once, with parts of these symbols in it.
+
+    vectors: its loops are made loops of vectors, where LLVM can.
 
     Parts are called from here alone. Numba would optimise twice, so that counts of references meet
     in one function; kernels count none.
@@ -42,8 +45,8 @@ def optimise(module: Any, parts: set[str], codegen: Any) -> None:
         if function.linkage == Linkage.internal:
             inner.append(function)
     level = min(LEVEL, config.OPT)  # type: ignore[attr-defined]
-    if not level:
-        passes, builder = codegen._module_pass_manager(opt=0)
+    if vectors or not level:
+        passes, builder = codegen._module_pass_manager(opt=level)
         passes.run(module, builder)
         return
     calls, lengths = counted(str(module))

@@ -95,7 +95,7 @@ class PartCode(_Linking):
                 passes.run(function, builder)
         self._final_module = module
 
-    def part(self, symbol: str, returns: Any, key: str, separate: bool) -> KernelPart:
+    def part(self, symbol: str, returns: Any, key: str, separate: int) -> KernelPart:
         """Return the part; of its symbols other code sees only its own."""
         module = self._final_module
         for library in self._linking_libraries:  # of numba's own functions
@@ -295,7 +295,7 @@ class Kernel(CPUDispatcher):
     def __init__(self, *arguments: Any, **named: Any) -> None:
         super().__init__(*arguments, **named)
         self.linked: dict[tuple[Any, ...], Linked] = {}  # by the types of the arguments
-        self.separate = False  # whether it is optimised without its callers (`separate_code`)
+        self.separate = 0  # how it is optimised without its callers (`separate_code`)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Compile for a kernel that calls this one."""

@@ -27,6 +27,7 @@ from llvmlite.binding import (
 )
 
 from .field_places import PREFIX, definitions, digest
+from .identity import IN_VECTORS
 from .kernel_parts import STORE, KernelPart, merged_into, separate_in, with_called
 from .optimisation import optimise
 
@@ -106,7 +107,7 @@ def _compiled(
     module = parse_bitcode(part.bitcode)
     module.name, module.data_layout = part.symbol, codegen._data_layout
     merged = merge(module, part.called, records, codegen)
-    optimise(module, merged - {part.symbol}, codegen)
+    optimise(module, merged - {part.symbol}, codegen, vectors=part.separate == IN_VECTORS)
     function = module.get_function(part.symbol)
     names = _argument_names(function)
     body = str(function).split("{", 1)[1]

@@ -31,6 +31,8 @@ WORTH, FEWEST_SWEEPS, MOST_SWEEPS, OPENING = 20, 100, 2000, 2
 LATER_SWEEPS, LATER, GROWTH = 1000, 2, 2
 # Cost of a sweep per block of W [ns].
 SWEEP_COST = 6.0
+# Where contacts are many: so many sweeps at a time, as long as they leave no more than this share.
+TURN_OF_SWEEPS, PAYS = 1000, 0.5
 # A method aims below the tolerance by this: the judge rounds otherwise [-].
 MARGIN = 0.5
 
@@ -78,13 +80,10 @@ class Search:
             if reached < reached_before:
                 self.move(to_impulses(self.p, x), reached)
 
-    def sweep(self, sweeps: float, share: float = 1.0) -> float:
-        """Sweep from here; return the residual.
-
-        share: of what may be spent yet, at most [-].
-        """
+    def sweep(self, sweeps: float) -> float:
+        """Sweep from here; return the residual."""
         cost = SWEEP_COST * len(self.problem.row)
-        within = min(sweeps, self.budget.steps_left, share * self.budget.cost_left / cost)
+        within = min(sweeps, self.budget.steps_left, self.budget.cost_left / cost)
         swept = solve_by_kernel(
             SWEEPER,
             self.problem,
@@ -97,6 +96,18 @@ class Search:
         self.budget.spend(swept.sweeps, cost * swept.sweeps, residuals)
         self.move(swept.impulses, swept.scaled)
         return swept.scaled
+
+    def sweep_while_it_pays(self, share: float) -> None:
+        """Sweep from here until so much is spent [-], or what is left falls too slowly."""
+        cost = SWEEP_COST * len(self.problem.row)
+        steps, spent = (1.0 - share) * self.budget.steps_left, (1.0 - share) * self.budget.cost_left
+        falls = True
+        while falls and not self.over:
+            within = min(self.budget.steps_left - steps, (self.budget.cost_left - spent) / cost)
+            if within < 1.0:
+                break
+            before = self.least
+            falls = self.sweep(min(TURN_OF_SWEEPS, within)) <= PAYS * before
 
     def rounds(self) -> None:
         """Make rounds from the best."""

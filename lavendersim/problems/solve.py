@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from math import inf
 
 import numpy as np
 
@@ -50,7 +49,7 @@ def _interior_point(search: Search) -> None:
 
 def _whatever_does_it(search: Search) -> None:
     if search.problem.contacts >= MANY:
-        search.sweep(inf, MOST_OF_IT)
+        search.sweep_while_it_pays(MOST_OF_IT)
     search.open()
     search.go_on(STRATEGIES)
 

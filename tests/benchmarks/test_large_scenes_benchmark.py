@@ -19,7 +19,7 @@ def test_scenes_have_as_many_bodies_as_their_names_say(name: str, bodies: int) -
     assert int((scene.bodies["inv_m"] > 0.0).sum()) == bodies
 
 
-def test_every_step_of_a_heap_is_solved_where_that_is_asked_for() -> None:
+def test_heaps_of_spheres_have_supernodes_where_a_config_asks() -> None:
     text = spheres(10, 10)
     left, asked = (
         case(one, record=False).plan.decisions["supernodes"] for one in (text, solved(text))

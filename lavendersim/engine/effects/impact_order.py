@@ -71,8 +71,9 @@ def decide(facts: Facts) -> Decision:
     """On when the numerics ask for it and impacts may follow each other, or turn as they come."""
     if facts.impacts != "in_order":
         return Decision(False, f"impacts are {facts.impacts}")
+    by_step = facts.stabilisation_gain > 0.0
     driven = driving(facts)
-    if driven:
+    if driven and not by_step:
         return Decision(True, f"{named(driven)}: a motor reaches its speed within a step")
     if not meeting(facts):
         return Decision(False, "nothing can touch")
@@ -84,7 +85,7 @@ def decide(facts: Facts) -> Decision:
         if only.surface.tangential_restitution > 0.0 and only.surface.friction > 0.0:
             return Decision(True, "every bounce gives back slip")
         return Decision(False, "one ball and one plane: no impact follows another within a step")
-    if facts.stabilisation_gain > 0.0:
+    if by_step:
         return Decision(False, "stabilisation_gain pushes by the step: it has no order in time")
     return Decision(True, "impacts are in_order")
 

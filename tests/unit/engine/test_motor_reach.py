@@ -11,7 +11,13 @@ from interpreted import interpreted
 from plain_facts import one_row
 
 from lavendersim.engine.approach import NEVER
-from lavendersim.engine.motor_reach import SPENT, make_first_reach, make_note_drive, reaches_speeds
+from lavendersim.engine.motor_reach import (
+    MOST_OF_A_PART,
+    SPENT,
+    make_first_reach,
+    make_note_drive,
+    reaches_speeds,
+)
 from lavendersim.engine.spec import Spec
 
 SPEC = Spec(
@@ -56,9 +62,10 @@ def state_of(contact: Any, a: float, b: float, rate: float = RATE) -> Any:
 
 
 def found(state: Any, left: float = STEP, spent: int = 0) -> float:
-    counters = one_row(spent=spent)
-    when = float(REACH(state, 1, one_row(dt=left, timestep=STEP), counters))
-    assert counters.spent == spent + (2 if when < left else 0)
+    counters, rows = one_row(spent=spent), len(state.contacts)
+    when = float(REACH(state, rows, one_row(dt=left, timestep=STEP), counters))
+    share = min(1 + rows, MOST_OF_A_PART)
+    assert counters.spent == spent + (share if when < left else 0)
     return when
 
 
@@ -73,6 +80,14 @@ def test_it_is_where_its_speed_and_rate_lead() -> None:
     assert found(state_of(motor(), 1.0, 4.5, -RATE)) == pytest.approx(0.5 / RATE)
     assert found(state_of(motor(), 1.0, 3.5), spent=SPENT) == NEVER
     assert found(state_of(motor(motor=0), 1.0, 3.5)) == NEVER
+
+
+def test_of_hundreds_of_rows_it_counts_as_few() -> None:
+    state = state_of(motor(), 1.0, 3.5)
+    state.contacts += [motor(motor=0) for _ in range(2 * SPENT)]
+    assert found(state) == pytest.approx(0.5 / RATE)
+    assert found(state, spent=SPENT - MOST_OF_A_PART) == pytest.approx(0.5 / RATE)
+    assert found(state, spent=SPENT - MOST_OF_A_PART + 1) == NEVER
 
 
 @pytest.mark.parametrize(

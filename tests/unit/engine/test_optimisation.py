@@ -53,6 +53,35 @@ def test_what_is_called_twice_is_merged_where_it_is_short(lines: int, merged: bo
     assert left(whole, {"part"}) == ({"whole"} if merged else {"whole", "part"})
 
 
+SUM = """define void @whole(ptr noalias %a, ptr noalias %b, i64 %n) {
+entry:
+  br label %loop
+loop:
+  %i = phi i64 [0, %entry], [%next, %loop]
+  %at = getelementptr double, ptr %a, i64 %i
+  %of = getelementptr double, ptr %b, i64 %i
+  %x = load double, ptr %at
+  %y = load double, ptr %of
+  %s = fadd double %x, %y
+  store double %s, ptr %at
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, %n
+  br i1 %more, label %loop, label %end
+end:
+  ret void
+}
+"""
+
+
+@pytest.mark.parametrize("vectors", [False, True])
+def test_loops_are_of_vectors_where_a_part_says_so(vectors: bool):
+    codegen = cpu_target.target_context.codegen()
+    module = parse_assembly(SUM)
+    module.data_layout = codegen._data_layout
+    optimise(module, set(), codegen, vectors=vectors)
+    assert ("x double>" in str(module)) == vectors
+
+
 def test_what_others_may_call_stays():
     whole = function("whole", calls=("other",)) + function("other")
     assert left(whole, set()) == {"whole", "other"}

@@ -123,8 +123,8 @@ def test_the_start_of_rounds_is_the_best(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_sweeps_alone_take_no_more_than_their_share() -> None:
     one = begun("slides", tolerance=1e-12, cost=1e6)
     before, left = one.least, one.budget.cost_left
-    reached = one.sweep(float("inf"), 0.25)
-    assert reached == one.least < before
+    one.sweep_while_it_pays(0.25)
+    assert one.least < before
     assert one.budget.steps > 1
     assert left - one.budget.cost_left <= 0.25 * left
     made = one.budget.steps
@@ -132,14 +132,36 @@ def test_sweeps_alone_take_no_more_than_their_share() -> None:
     assert one.budget.steps <= made + 3
 
 
-@pytest.mark.parametrize(("many", "first"), [(4, "sweep"), (5, "open")])
+@pytest.mark.parametrize(("many", "first"), [(4, "sweep_while_it_pays"), (5, "open")])
 def test_auto_sweeps_first_where_contacts_are_many(
     many: int, first: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     taken: list[str] = []
     monkeypatch.setattr(solve, "MANY", many)  # a cube has four
-    for name in ("sweep", "open", "go_on"):
+    for name in ("sweep_while_it_pays", "open", "go_on"):
         monkeypatch.setattr(Search, name, lambda *given, name=name: taken.append(name))
     solve.SOLVERS["auto"](cube(BY_HAND["slides"][0]), 1e-9, 100)
     assert taken[0] == first
     assert taken[-2:] == ["open", "go_on"]
+
+
+@pytest.mark.parametrize(("left", "turns"), [([0.4, 0.15, 0.14], 3), ([0.7], 1), ([0.4] * 9, 2)])
+def test_sweeps_are_taken_while_they_pay(
+    left: list[float], turns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    search = Search(cube(BY_HAND["slides"][0]), 1e-9, 10**6, None, False, cost=1e12)
+    search.least, residuals = 1.0, iter(left)
+
+    def sweep(self: Search, sweeps: float) -> float:
+        self.least = next(residuals)
+        return self.least
+
+    monkeypatch.setattr(Search, "sweep", sweep)
+    search.sweep_while_it_pays(0.8)
+    assert len(left) - len(list(residuals)) == turns
+
+
+def test_sweeps_leave_a_share_of_steps_to_others() -> None:
+    search = Search(cube(BY_HAND["slides"][0]), 1e-300, 5, None, False, cost=1e12)
+    search.sweep_while_it_pays(0.8)
+    assert search.budget.steps_left >= 1

@@ -140,7 +140,7 @@ def make_factorise(spec: Spec) -> Any:
     """Return `kernel(size, workspace) -> whether` the matrix, L D L^T now, is positive definite."""
     if not eliminates(spec):
         return factorise_envelope
-    by_panels = separate(kernel(factorise_panels.py_func, spec), spec)
+    by_panels = separate(kernel(factorise_panels.py_func, spec), spec, vectors=True)
 
     def factorise(size, workspace):
         if workspace.elimination.nodes.outcome[CHOSEN] == 1:
@@ -168,7 +168,7 @@ def make_factorise_lu(spec: Spec) -> Any:
     """Return `kernel(size, workspace) -> whether` there is a factor L U, which it is now."""
     if not eliminates(spec):
         return factorise_lu_envelope
-    by_panels = separate(kernel(factorise_panels.py_func, spec), spec)
+    by_panels = separate(kernel(factorise_panels.py_func, spec), spec, vectors=True)
 
     def factorise_lu(size, workspace):
         if workspace.elimination.nodes.outcome[CHOSEN] == 1:

@@ -278,6 +278,16 @@ def test_it_is_on_where_impacts_may_follow_each_other() -> None:
         assert not decision.on, decision.reason
 
 
+def test_a_motor_asks_for_no_parts_where_a_gain_pushes_by_the_step(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A target of gain / length times depth grows without bound as a part gets short."""
+    monkeypatch.setattr("lavendersim.engine.effects.impact_order.driving", lambda _: ["rod, base"])
+    driven = floor_and_ball()
+    assert EFFECT.decide(driven).on
+    assert not EFFECT.decide(driven._replace(stabilisation_gain=0.02, pair_count=2)).on
+
+
 @pytest.mark.parametrize("down", [(0.0, 0.0, -9.81), (0.0, 0.6, -0.8)])
 def test_a_ball_that_may_slide_back_on_its_plane_has_parts(down: tuple[float, ...]) -> None:
     """Gravity along the normal drives nothing along the plane, in whatever direction that is."""
