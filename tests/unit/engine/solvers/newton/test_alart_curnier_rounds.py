@@ -96,3 +96,8 @@ def test_rounds_end_at_what_is_asked_or_where_they_bring_no_more(monkeypatch) ->
         script = [0.1, 0.1 * last, 0.1 * last]
         assert Rounds(monkeypatch, script, enough=0.05).steps == steps
     assert Rounds(monkeypatch, [0.5], enough=1.01).steps == 0
+
+
+def test_what_is_taken_back_leaves_no_digit_of_it_in_velocities(monkeypatch) -> None:
+    """Of 1e12 N s the last digit is 1e-4: `Rounds` allows velocities 1e-10 m/s."""
+    assert Rounds(monkeypatch, [0.5, 1e12, 0.4, 0.3], most=4).left == near(0.3)
