@@ -88,13 +88,16 @@ def meets(node, centre, half):
 
 
 @inner
-def is_within(side, p, h):
-    """Whether a point at height h over a triangle's plane is on its side of one of its sides."""
+def is_within(side, p, h, near):
+    """Whether a point at height h over a triangle's plane is on its side of one of its sides.
+
+    Beyond a concave side it still is within `near` [m], where it is inside the face there.
+    """
     from_side = minus(p, Vec3(side.x, side.y, side.z))
     inward = dot(Vec3(side.mx, side.my, side.mz), from_side)
     if side.kind == CONVEX and h < 0.0:
         return h >= dot(Vec3(side.nx, side.ny, side.nz), from_side) - TOUCHING
-    if side.kind == CONCAVE and inward < -TOUCHING:
+    if side.kind == CONCAVE and -TOUCHING - near <= inward < -TOUCHING:
         return dot(Vec3(side.nx, side.ny, side.nz), from_side) <= TOUCHING
     return inward >= -TOUCHING
 
@@ -120,7 +123,7 @@ def is_over(mesh, tables, group, p, h, near):
         if t >= 0 and tables.triangles[t].group == group:
             inside = True
             for s in range(3 * t, 3 * t + 3):
-                inside = inside and is_within(tables.sides[s], point, h)
+                inside = inside and is_within(tables.sides[s], point, h, near)
             if inside:
                 return True
         k += 1

@@ -83,6 +83,20 @@ def test_in_a_valley_both_slopes_touch_and_its_edge_never() -> None:
         assert phi.min() == pytest.approx(level, abs=1e-15)
 
 
+def test_a_floor_ends_at_the_wall_on_it() -> None:
+    """Behind the wall, 5.7 m of it, there is no floor; 2 mm behind it a ball is pushed out."""
+    mesh = CellMesh(
+        kind="mesh",
+        vertices=((0, 0, 0), (10, 0, 0), (0, 10, 0), (10, 0, 3), (0, 10, 3)),
+        triangles=((0, 1, 2), (2, 1, 3), (2, 3, 4)),
+    )
+    assert len(contacts(mesh, ball((9, 9, 0.05)), 0.01, at=ORIGIN)[2]) == 0
+    inward = 5.0 + 0.002 / math.sqrt(2)
+    _, (n,), (phi,), _ = contacts(mesh, ball((inward, inward, 0.05)), 0.01, at=ORIGIN)
+    np.testing.assert_array_equal(n, (0.0, 0.0, 1.0))
+    assert phi == pytest.approx(-0.05, abs=1e-15)
+
+
 def test_a_body_behind_a_surface_does_not_touch_it() -> None:
     assert len(contacts(FLOOR, ball((0.3, 0.2, -0.05)), 0.2, at=ORIGIN)[2]) == 0
     (phi,) = contacts(FLOOR, ball((0.3, 0.2, 0.05)), 0.2, at=ORIGIN)[2]
