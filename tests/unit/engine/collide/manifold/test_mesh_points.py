@@ -97,6 +97,23 @@ def test_a_floor_ends_at_the_wall_on_it() -> None:
     assert phi == pytest.approx(-0.05, abs=1e-15)
 
 
+def test_a_sheet_with_two_faces_is_touched_from_both_and_at_its_rim() -> None:
+    sheet = CellMesh(
+        kind="mesh", vertices=((0, 0, 0), (2, 0, 0), (0, 2, 0)), triangles=((0, 1, 2), (0, 2, 1))
+    )
+    for side in (1.0, -1.0):
+        for height in (0.12, 0.05):
+            _, (n,), (phi,), _ = contacts(sheet, ball((0.5, 0.5, side * height)), 0.1, at=ORIGIN)
+            np.testing.assert_array_equal(n, (0.0, 0.0, side))
+            assert phi == pytest.approx(height - 0.1, abs=1e-15)
+    _, (n,), (phi,), _ = contacts(sheet, ball((1.0, -0.12, 0.0)), 0.1, at=ORIGIN)
+    np.testing.assert_allclose(n, (0.0, -1.0, 0.0), atol=1e-15)
+    assert phi == pytest.approx(0.02, abs=1e-15)
+    _, (n,), (phi,), _ = contacts(sheet, ball((-0.12, -0.16, 0.0)), 0.15, at=ORIGIN)
+    np.testing.assert_allclose(n, (-0.6, -0.8, 0.0), atol=1e-14)
+    assert phi == pytest.approx(0.1, abs=1e-15)
+
+
 def test_a_body_behind_a_surface_does_not_touch_it() -> None:
     assert len(contacts(FLOOR, ball((0.3, 0.2, -0.05)), 0.2, at=ORIGIN)[2]) == 0
     (phi,) = contacts(FLOOR, ball((0.3, 0.2, 0.05)), 0.2, at=ORIGIN)[2]
