@@ -14,6 +14,10 @@ from lavendersim.geometry.rotations import Floats
 
 # Least height of a triangle over its longest side, in its length [-]: normals have ten digits then.
 LEAST_HEIGHT = 1e-6
+# How near to a side, in its length, a vertex lies on it [-].
+ON_SIDE = 1e-9
+# Sides at the rim up to which vertices on them are looked for: the time grows with their square.
+MOST_RIM = 4000
 Whole = np.ndarray  # int64
 
 
@@ -43,7 +47,8 @@ def merged(vertices: Floats, triangles: Whole) -> tuple[Floats, Whole]:
 def surface_of(vertices: ArrayLike, triangles: ArrayLike) -> TriangleSurface:
     """Return a surface; raises MeshError where triangles have no area or are no surface.
 
-    vertices: (V, 3) [m]; vertices at one place are one. triangles: (T, 3) rows of them.
+    vertices: (V, 3) [m]; vertices at one place are one. triangles: (T, 3) rows of them, which share
+    whole sides; a vertex on one is found where at most MOST_RIM sides have no second triangle.
     """
     places, corners = merged(np.asarray(vertices, float), np.asarray(triangles, np.int64))
     a, b, c = (places[corners[:, k]] for k in range(3))
@@ -53,7 +58,33 @@ def surface_of(vertices: ArrayLike, triangles: ArrayLike) -> TriangleSurface:
     thin = np.flatnonzero(~(double > LEAST_HEIGHT * longest**2))
     if len(thin):
         raise MeshError(int(thin[0]), "its corners lie on a line")
-    return TriangleSurface(places, corners, across / double[:, None], _beyond(corners))
+    beyond = _beyond(corners)
+    _check_rim(places, corners, beyond)
+    return TriangleSurface(places, corners, across / double[:, None], beyond)
+
+
+def _check_rim(places: Floats, corners: Whole, beyond: Whole) -> None:
+    """Raise where a vertex lies on a side of a triangle that has no second one."""
+    sides = np.flatnonzero(beyond.reshape(-1) < 0)
+    if len(sides) > MOST_RIM:
+        return
+    start, end = corners.reshape(-1)[sides], np.roll(corners, -1, axis=1).reshape(-1)[sides]
+    rim = np.unique(start)
+    points = places[rim]
+    for side, first, last in zip(sides.tolist(), start.tolist(), end.tolist(), strict=True):
+        way = places[last] - places[first]
+        off, square = points - places[first], float(way @ way)
+        along = np.clip(off @ way / square, 0.0, 1.0)
+        apart = off - along[:, None] * way
+        on = np.einsum("ij,ij->i", apart, apart) <= ON_SIDE**2 * square
+        on &= (rim != first) & (rim != last)
+        if on.any():
+            place = ", ".join(f"{x:.6g}" for x in points[np.argmax(on)])
+            raise MeshError(
+                side // 3,
+                f"a vertex at ({place}) lies on one of its sides; expected triangles to share whole "
+                "sides",
+            )
 
 
 def _beyond(corners: Whole) -> Whole:

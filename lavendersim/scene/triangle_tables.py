@@ -234,18 +234,19 @@ def _edges(surface: TriangleSurface, faces: _Faces, sides: np.ndarray) -> np.nda
 
     def grown(key: tuple[int, int], piece: _Piece, at: int) -> int:
         """Return the corner where the edge through a piece ends beyond one of its ends."""
-        way = surface.vertices[piece.end] - surface.vertices[piece.start]
+        way = surface.vertices[at] - surface.vertices[piece.start + piece.end - at]
         way /= np.linalg.norm(way)
         while around[at] == {one for one in key if one >= 0}:
             for following in pieces[key][at]:
                 if following.side in taken:
                     continue
-                other = surface.vertices[following.end] - surface.vertices[following.start]
+                end = following.start + following.end - at
+                other = surface.vertices[end] - surface.vertices[at]
                 turn = np.cross(way, other / np.linalg.norm(other))
-                if float(turn @ turn) <= STRAIGHT**2:
+                if float(way @ other) > 0.0 and float(turn @ turn) <= STRAIGHT**2:
                     taken.add(following.side)
                     sides["edge"][following.side] = len(rows)
-                    at = following.start + following.end - at
+                    at = end
                     break
             else:
                 break

@@ -22,6 +22,17 @@ def test_vertices_at_one_place_are_one() -> None:
     assert triangles[0] == triangles[1]
 
 
+def test_a_vertex_on_a_side_is_refused() -> None:
+    """Two triangles share but half of a third one's side; one that is near its end is no twin."""
+    places = np.array([(0, 0, 0), (2, 0, 0), (1, 0, 0), (1, -1, 0), (1, 1, 0)], float)
+    with pytest.raises(MeshError, match=r"vertex at \(1, 0, 0\) lies on") as caught:
+        surface_of(places, np.array([(0, 3, 1), (0, 2, 4), (2, 1, 4)]))
+    assert caught.value.triangle == 0
+    places[2] = (1e-10, 0, 0)
+    with pytest.raises(MeshError, match="share whole sides"):
+        surface_of(places, np.array([(0, 3, 1), (2, 1, 4)]))
+
+
 @pytest.mark.parametrize(
     ("triangles", "row", "sentence"),
     [

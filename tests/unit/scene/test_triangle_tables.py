@@ -8,6 +8,7 @@ from mesh_tables_of import BOX, GRID
 
 from lavendersim.cell import CellMesh
 from lavendersim.engine.collide.mesh_tables import CONCAVE, CONVEX, FLAT, FOLDED, FREE
+from lavendersim.geometry import triangle_mesh
 from lavendersim.scene.triangle_tables import mesh_tables
 
 
@@ -51,6 +52,15 @@ def test_a_sheet_with_two_faces_has_a_rim() -> None:
     assert (len(tables.groups), len(tables.edges)) == (2, 3)
     assert set(tables.sides["kind"]) == {FOLDED}
     assert sorted(tables.sides["edge"]) == [0, 0, 1, 1, 2, 2]
+
+
+def test_a_straight_edge_does_not_turn_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sides that overlap, as where a large mesh is not looked through, leave no edge of no length."""
+    monkeypatch.setattr(triangle_mesh, "MOST_RIM", 0)
+    places = ((0, 0, 0), (2, 0, 0), (1, 0, 0), (1, -1, 0), (1, 1, 0), (3, 0, 0))
+    triangles = ((0, 3, 1), (0, 2, 4), (2, 1, 4), (3, 5, 1), (1, 5, 4))
+    tables, _ = mesh_tables([CellMesh(kind="mesh", vertices=places, triangles=triangles)])
+    assert (tables.edges["length"] >= 0.5).all()
 
 
 def test_a_walk_that_meets_every_box_comes_by_every_triangle_once() -> None:
