@@ -23,7 +23,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...compile import inner, kernel
-from ...records import MESH, TOUCHING
+from ...records import BOX, MESH, TOUCHING
 from ...spec import Spec
 from ...vectors import (
     Vec3,
@@ -190,7 +190,9 @@ def make_put_face(spec: Spec, touch_plane: Any) -> Any:
                 inside += 1
         if found == total:
             kept = inside
-        if kept < found and reduction[WHOLE] == 0:
+        # Of a box the corners of the lower face came first: no upper one takes a lower one's place.
+        chosen = body.shape == BOX and kept > 0
+        if kept < found and not chosen and reduction[WHOLE] == 0:
             kept = keep_four(points, inside, n)
         for k in range(inside):
             point = points[k]

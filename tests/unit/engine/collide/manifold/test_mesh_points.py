@@ -131,6 +131,18 @@ def test_a_box_half_over_a_table_touches_at_the_tables_edge() -> None:
     np.testing.assert_allclose(found, corners, atol=2e-9)  # cuts reach as far as surfaces touch
 
 
+def test_a_plate_over_a_rim_keeps_its_lower_corners() -> None:
+    half, rest = 0.005, 0.001
+    table = CellMesh(
+        kind="mesh", vertices=((-1, -1, 0), (1, -1, 0), (-1, 1, 0)), triangles=((0, 1, 2),)
+    )
+    plate = body("box", (0.1, 0.1, half), (-0.05, -0.05, half + rest))
+    places, _, phi, _ = contacts(table, plate, 0.02, at=ORIGIN)
+    np.testing.assert_allclose(phi, rest, atol=1e-15)
+    for corner in ((-0.15, -0.15), (-0.15, 0.05), (0.05, -0.15)):  # the fourth is beside the table
+        assert np.linalg.norm(places[:, :2] - corner, axis=1).min() < 2e-9
+
+
 @pytest.mark.parametrize("kind", ["sphere", "box", "cylinder"])
 def test_no_normal_leads_into_a_face_beside_its_point(kind: str) -> None:
     """For what is apart: no triangle with the point on it rises along the normal."""
