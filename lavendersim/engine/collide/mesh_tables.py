@@ -79,10 +79,15 @@ class MeshTables(NamedTuple):
 
 
 def with_room(tables: MeshTables, bodies: np.dtype, most_points: int) -> MeshTables:
-    """Return tables with what kernels work in; most_points: of one body on one face."""
+    """Return tables with what kernels work in; most_points: of one body on one face.
+
+    What they have `seen` is marked in copies: engines of one scene share the tables.
+    """
     sharp, faces = len(tables.edges), len(tables.groups)
     room = 2 * most_points * min(faces, 64) + 4 * (faces + sharp) + 64
     return tables._replace(
+        groups=tables.groups.copy(),
+        edges=tables.edges.copy(),
         stamp=np.zeros(1, np.int64),
         row=np.zeros(1, bodies),
         points=np.zeros(room, dtype(POINT)),
