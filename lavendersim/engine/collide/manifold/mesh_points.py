@@ -15,7 +15,7 @@ So a normal is that of a face, or lies between those of the faces around its edg
 the distance to the surface is least. Edges inside of a face, and concave ones, have no points. The
 outside is where normals point. A body whose centre is behind a face's plane does not touch it.
 A point of B that is inside (h < 0) touches of two faces at a convex edge the one it is less deep
-under, of two at a concave edge both.
+under, of those that B's centre is in front of; of two at a concave edge both, near that edge.
 """
 
 from __future__ import annotations
@@ -88,25 +88,29 @@ def meets(node, centre, half):
 
 
 @inner
-def is_within(side, p, h, near):
+def is_within(side, p, h, centre, near):
     """Whether a point at height h over a triangle's plane is on its side of one of its sides.
 
-    Beyond a concave side it still is within `near` [m], where it is inside the face there.
+    Beyond a concave side it still is within `near` [m], where it is inside the face there. centre:
+    of the body; a face yields to none that it is behind, which would not touch it.
     """
     from_side = minus(p, Vec3(side.x, side.y, side.z))
     inward = dot(Vec3(side.mx, side.my, side.mz), from_side)
     if side.kind == CONVEX and h < 0.0:
-        return h >= dot(Vec3(side.nx, side.ny, side.nz), from_side) - TOUCHING
+        beyond, own = Vec3(side.nx, side.ny, side.nz), minus(centre, Vec3(side.x, side.y, side.z))
+        if dot(beyond, own) > 0.0:
+            return h >= dot(beyond, from_side) - TOUCHING
     if side.kind == CONCAVE and -TOUCHING - near <= inward < -TOUCHING:
         return dot(Vec3(side.nx, side.ny, side.nz), from_side) <= TOUCHING
     return inward >= -TOUCHING
 
 
 @inner
-def is_over(mesh, tables, group, p, h, near):
+def is_over(mesh, tables, group, p, h, centre, near):
     """Whether a point in the mesh's frame at height h over a group's plane is over its triangles.
 
-    near: how far beyond a triangle it may be and still be inside of it [m].
+    centre: of the body, in this frame. near: how far beyond a triangle the point may be and still
+    be inside of it [m].
     """
     face = tables.groups[group]
     n = Vec3(face.nx, face.ny, face.nz)
@@ -123,7 +127,7 @@ def is_over(mesh, tables, group, p, h, near):
         if t >= 0 and tables.triangles[t].group == group:
             inside = True
             for s in range(3 * t, 3 * t + 3):
-                inside = inside and is_within(tables.sides[s], point, h, near)
+                inside = inside and is_within(tables.sides[s], point, h, centre, near)
             if inside:
                 return True
         k += 1
@@ -178,13 +182,14 @@ def make_put_face(spec: Spec, touch_plane: Any) -> Any:
         found = touch_plane(row, body, margin, scratch)
         total = found + reduction[LEFT_OUT]
         grown, near = radius(body), NEAR * body.bound
+        centre = into_mesh(mesh, position(body))
         inside, kept = 0, 0
         for k in range(total):
             if k == found:
                 kept = inside
             point = points[k]
             h = point.phi + grown
-            if is_over(mesh, tables, group, into_mesh(mesh, position(point)), h, near):
+            if is_over(mesh, tables, group, into_mesh(mesh, position(point)), h, centre, near):
                 if inside < k:
                     swap_points(points[inside], points[k])
                 inside += 1

@@ -143,6 +143,14 @@ def test_a_plate_over_a_rim_keeps_its_lower_corners() -> None:
         assert np.linalg.norm(places[:, :2] - corner, axis=1).min() < 2e-9
 
 
+def test_a_column_deep_in_a_block_is_pushed_out_of_the_face_that_it_is_in_front_of() -> None:
+    """Its foot is 0.35 m under the top and 0.15 m from a side, which its centre is behind."""
+    column = body("box", (0.05, 0.05, 0.4), (0.3, 0.0, 0.55))
+    _, normals, phi, _ = contacts(BOX, column, 0.01, at=ORIGIN)
+    np.testing.assert_array_equal(normals, np.tile((0.0, 0.0, 1.0), (4, 1)))
+    np.testing.assert_allclose(phi, -0.35, atol=1e-15)
+
+
 @pytest.mark.parametrize("kind", ["sphere", "box", "cylinder"])
 def test_no_normal_leads_into_a_face_beside_its_point(kind: str) -> None:
     """For what is apart: no triangle with the point on it rises along the normal."""
