@@ -82,9 +82,37 @@ def _check_rim(places: Floats, corners: Whole, beyond: Whole) -> None:
             place = ", ".join(f"{x:.6g}" for x in points[np.argmax(on)])
             raise MeshError(
                 side // 3,
-                f"a vertex at ({place}) lies on one of its sides; expected triangles to share whole "
-                "sides",
+                f"a vertex at ({place}) lies on one of its sides; expected triangles to share "
+                "whole sides",
             )
+
+
+def depth_behind(surface: TriangleSurface, point: Floats) -> float:
+    """Return how far a point is behind the surface [m]; 0 in front of it, or beside its rim.
+
+    That is decided where the surface is nearest, by the sum of the normals of all that meet there
+    (Baerentzen and Aanaes 2005, who weigh them by angles: exact within faces and at edges).
+    """
+    start = surface.vertices[surface.triangles]  # (T, 3, 3)
+    way = np.roll(start, -1, axis=1) - start
+    off = point - start
+    along = np.einsum("ijk,ijk->ij", off, way) / np.einsum("ijk,ijk->ij", way, way)
+    inward = np.cross(surface.normals[:, None, :], way)
+    over = (np.einsum("ijk,ijk->ij", off, inward) >= 0.0).all(axis=1)
+    heights = np.einsum("ij,ij->i", off[:, 0], surface.normals)
+    to_sides = np.linalg.norm(off - np.clip(along, 0.0, 1.0)[..., None] * way, axis=2)
+    apart = np.where(over, np.abs(heights), to_sides.min(axis=1))
+    least = float(apart.min())
+    reach = least + ON_SIDE * float(np.abs(surface.vertices).max())
+    at_rim = (to_sides <= reach) & (surface.beyond < 0)
+    summed = surface.normals[apart <= reach].sum(axis=0)
+    nearest = int(np.argmin(apart))
+    side = int(np.argmin(to_sides[nearest]))
+    foot = start[nearest, side] + np.clip(along[nearest, side], 0.0, 1.0) * way[nearest, side]
+    if over[nearest]:
+        foot = point - heights[nearest] * surface.normals[nearest]
+    behind = float(summed @ (point - foot)) < 0.0 and not at_rim.any()
+    return least if behind else 0.0
 
 
 def _beyond(corners: Whole) -> Whole:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lavendersim.geometry.triangle_mesh import MeshError, merged, surface_of
+from lavendersim.geometry.triangle_mesh import MeshError, depth_behind, merged, surface_of
 
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1)]
 
@@ -31,6 +31,28 @@ def test_a_vertex_on_a_side_is_refused() -> None:
     places[2] = (1e-10, 0, 0)
     with pytest.raises(MeshError, match="share whole sides"):
         surface_of(places, np.array([(0, 3, 1), (2, 1, 4)]))
+
+
+def test_inside_of_a_notched_block_a_point_is_behind_by_its_distance() -> None:
+    """A prism over an L of unit squares: its notch ends in a concave edge at (1, 1)."""
+    loop = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
+    places = np.array([(x, y, z) for z in (0, 2) for x, y in loop], float)
+    fan = [(3, k, (k + 1) % 6) for k in range(6) if k != 3 and (k + 1) % 6 != 3]
+    walls = [t for k in range(6) for j in [(k + 1) % 6] for t in ((k, j, j + 6), (k, j + 6, k + 6))]
+    triangles = [(a, c, b) for a, b, c in fan] + [(a + 6, b + 6, c + 6) for a, b, c in fan] + walls
+    surface = surface_of(places, np.array(triangles))
+    assert (surface.beyond >= 0).all()
+    inside = {
+        (0.9, 0.9): 0.1 * np.sqrt(2.0),
+        (0.5, 1.7): 0.3,
+        (1.5, 0.2): 0.2,
+        (0.9, 0.8): 0.05**0.5,
+    }
+    for (x, y), depth in inside.items():
+        assert depth_behind(surface, np.array((x, y, 1.0))) == pytest.approx(depth, abs=1e-14)
+    for x, y in ((1.1, 1.1), (2.1, -0.1), (2.3, 0.9), (1.5, 1.4), (-3.0, 0.5)):
+        assert depth_behind(surface, np.array((x, y, 1.0))) == 0.0
+    assert depth_behind(surface, np.array((2.1, -0.2, 2.3))) == 0.0
 
 
 @pytest.mark.parametrize(

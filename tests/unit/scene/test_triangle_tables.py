@@ -55,7 +55,7 @@ def test_a_sheet_with_two_faces_has_a_rim() -> None:
 
 
 def test_a_straight_edge_does_not_turn_back(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sides that overlap, as where a large mesh is not looked through, leave no edge of no length."""
+    """Sides that overlap, as where a large mesh is not looked through, make no edge of length 0."""
     monkeypatch.setattr(triangle_mesh, "MOST_RIM", 0)
     places = ((0, 0, 0), (2, 0, 0), (1, 0, 0), (1, -1, 0), (1, 1, 0), (3, 0, 0))
     triangles = ((0, 3, 1), (0, 2, 4), (2, 1, 4), (3, 5, 1), (1, 5, 4))
