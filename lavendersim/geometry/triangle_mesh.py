@@ -1,6 +1,6 @@
 """Surfaces of triangles: which hang together, by which sides, and what is no surface.
 
-Corners of a triangle turn left seen from outside: its normal is (b - a) x (c - a).
+Corners of a triangle run counter-clockwise seen from outside: its normal is (b - a) x (c - a).
 """
 
 from __future__ import annotations
@@ -115,7 +115,19 @@ def depth_behind(surface: TriangleSurface, point: Floats) -> float:
     return least if behind else 0.0
 
 
+def _check_repeats(corners: Whole) -> None:
+    """Raise where two triangles have the same corners and face the same way."""
+    first = np.argmin(corners, axis=1)
+    turned = corners[np.arange(len(corners))[:, None], (first[:, None] + np.arange(3)) % 3]
+    _, earliest, which = np.unique(turned, axis=0, return_index=True, return_inverse=True)
+    before = earliest[which.reshape(-1)]
+    again = np.flatnonzero(before < np.arange(len(corners)))
+    if len(again):
+        raise MeshError(int(again[0]), f"it is triangle {before[again[0]]} again")
+
+
 def _beyond(corners: Whole) -> Whole:
+    _check_repeats(corners)
     start, end = corners.reshape(-1), np.roll(corners, -1, axis=1).reshape(-1)
     low, high = np.minimum(start, end), np.maximum(start, end)
     order = np.lexsort((high, low))
@@ -131,8 +143,8 @@ def _beyond(corners: Whole) -> Whole:
         triangle, neighbour = int(other[k]) // 3, int(one[k]) // 3
         raise MeshError(
             triangle,
-            f"its normal is opposite to that of triangle {neighbour}, beside it; expected all to "
-            "turn left seen from outside",
+            f"its corners run the other way round than those of triangle {neighbour}, beside it; "
+            "expected all to run counter-clockwise seen from outside",
         )
     beyond = np.full(len(start), -1, np.int64)
     beyond[one], beyond[other] = other // 3, one // 3

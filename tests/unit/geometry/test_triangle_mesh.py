@@ -60,7 +60,8 @@ def test_inside_of_a_notched_block_a_point_is_behind_by_its_distance() -> None:
     [
         ([(0, 1, 2), (0, 1, 1)], 1, "on a line"),
         ([(0, 1, 2), (1, 0, 3), (0, 1, 4)], 2, "the third triangle"),
-        ([(0, 1, 2), (0, 3, 2)], 1, "opposite to that of triangle 0"),
+        ([(0, 1, 2), (0, 3, 2), (3, 2, 0)], 2, "it is triangle 1 again"),
+        ([(0, 1, 2), (0, 3, 2)], 1, "other way round than those of triangle 0"),
     ],
 )
 def test_what_is_no_surface_is_named_by_its_triangle(triangles, row: int, sentence: str) -> None:

@@ -92,9 +92,8 @@ def test_a_body_whose_centre_is_behind_a_mesh_is_found(shape: str) -> None:
         assert found(config(body("a", shape, 0.0, 5.0 + above), mesh)) == []
         (defect,) = found(config(body("a", shape, 0.0, 5.0 - above), mesh))
         assert defect.message.startswith(f"a starts {deep} m behind the surface of ground")
-        assert (
-            found(config(body("a", shape, above * 12.0, 5.0 - above), mesh)) == []
-        )  # beside its rim
+        beside_its_rim = body("a", shape, above * 12.0, 5.0 - above)
+        assert found(config(beside_its_rim, mesh)) == []
 
 
 @pytest.mark.parametrize("cavity", ["bowl", "drum"])
