@@ -136,9 +136,14 @@ def is_over(mesh, tables, group, p, h, centre, near):
 
 @inner
 def put(tables, point, n, feature):
-    """Put a point with its normal and name behind those there are, while there is room."""
+    """Put a point with its normal and name behind those there are, while there is room.
+
+    One that is left out gives its place up.
+    """
     k = tables.counts[KEPT]
-    if k + tables.counts[LEFT] < tables.points.shape[0]:
+    if k < tables.points.shape[0]:
+        if k + tables.counts[LEFT] == tables.points.shape[0]:
+            tables.counts[LEFT] -= 1
         copy_point(point, tables.points[k])
         tables.points[k].feature = feature
         tables.normals[3 * k], tables.normals[3 * k + 1], tables.normals[3 * k + 2] = n

@@ -6,14 +6,19 @@ A normal of a contact is that of a face, or lies between the normals of the face
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import convex
 import numpy as np
 import pytest
+from interpreted import interpreted, records
 from mesh_contacts import BOX, KINDS, contacts, drawn, terrain, world
 from single_bodies import body, manifold
 
 from lavendersim.cell import CellMesh
+from lavendersim.engine.collide.manifold.mesh_points import put, put_left_out
+from lavendersim.engine.records import POINT, dtype
+from lavendersim.engine.vectors import Vec3
 
 ORIGIN = np.zeros(3)
 # Nine triangles around two inner corners, thin ones among them, 4 m wide.
@@ -149,6 +154,19 @@ def test_a_column_deep_in_a_block_is_pushed_out_of_the_face_that_it_is_in_front_
     _, normals, phi, _ = contacts(BOX, column, 0.01, at=ORIGIN)
     np.testing.assert_array_equal(normals, np.tile((0.0, 0.0, 1.0), (4, 1)))
     np.testing.assert_allclose(phi, -0.35, atol=1e-15)
+
+
+def test_what_is_left_out_takes_no_room_of_what_is_kept() -> None:
+    point, row = np.zeros(1, dtype(POINT)), np.zeros(3, dtype(POINT))
+    counts, normals = np.zeros(2, np.int64), np.zeros(9)
+    room = SimpleNamespace(points=records(row), counts=counts, normals=normals)
+    keep, leave = interpreted(put), interpreted(put_left_out)
+    for name in (1, 2, 3, 4):
+        leave(room, records(point)[0], Vec3(0.0, 0.0, 1.0), name)
+    assert (row["feature"].tolist(), counts.tolist()) == ([3, 2, 1], [0, 3])
+    for name in (11, 12, 13, 14):
+        keep(room, records(point)[0], Vec3(0.0, 0.0, 1.0), name)
+    assert (row["feature"].tolist(), counts.tolist()) == ([11, 12, 13], [3, 0])
 
 
 @pytest.mark.parametrize("kind", ["sphere", "box", "cylinder"])
