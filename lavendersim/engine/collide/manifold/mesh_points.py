@@ -106,12 +106,13 @@ def is_within(side, p, h, centre, near):
 
 
 @inner
-def is_over(mesh, tables, group, p, h, centre, near):
+def is_over(mesh, tables, group, p, h, of_body):
     """Whether a point in the mesh's frame at height h over a group's plane is over its triangles.
 
-    centre: of the body, in this frame. near: how far beyond a triangle the point may be and still
+    of_body: its centre in this frame, and how far beyond a triangle a point of it may be and still
     be inside of it [m].
     """
+    centre, near = of_body
     face = tables.groups[group]
     n = Vec3(face.nx, face.ny, face.nz)
     foot = plus_scaled(p, face.offset - dot(n, p), n)
@@ -187,14 +188,14 @@ def make_put_face(spec: Spec, touch_plane: Any) -> Any:
         found = touch_plane(row, body, margin, scratch)
         total = found + reduction[LEFT_OUT]
         grown, near = radius(body), NEAR * body.bound
-        centre = into_mesh(mesh, position(body))
+        of_body = into_mesh(mesh, position(body)), near
         inside, kept = 0, 0
         for k in range(total):
             if k == found:
                 kept = inside
             point = points[k]
             h = point.phi + grown
-            if is_over(mesh, tables, group, into_mesh(mesh, position(point)), h, centre, near):
+            if is_over(mesh, tables, group, into_mesh(mesh, position(point)), h, of_body):
                 if inside < k:
                     swap_points(points[inside], points[k])
                 inside += 1

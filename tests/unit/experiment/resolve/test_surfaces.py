@@ -36,7 +36,7 @@ def test_rows_of_other_lengths_are_refused() -> None:
 def test_a_cell_at_fault_is_named_by_its_place_in_heights() -> None:
     """A slope of 1e9 makes a triangle that is a line but for round-off."""
     heights = ((0.0, 0.0, 0.0), (0.0, 0.0, 1e9))
-    with pytest.raises(SceneError, match="between rows 0 and 1, heights 1 and 2: .* a line") as it:
+    with pytest.raises(SceneError, match=r"between rows 0 and 1, heights 1 and 2: .* a line") as it:
         resolve_surface(field(heights))
     assert it.value.path == ("heights",)
 
