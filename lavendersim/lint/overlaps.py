@@ -33,7 +33,7 @@ from lavendersim.measures.solids import (
 
 DRAWN_IN: Final = 0.01  # share of a shape's size that counts as touching
 MOST_PAIRS: Final = 2000  # that GJK looks at, some 0.2 ms each
-MOST_TRIANGLES: Final = 2_000_000  # that centres are checked against, some 1 us each
+MOST_TRIANGLES: Final = 200_000  # that centres are checked against, some 1 us each
 
 
 class Parts(NamedTuple):

@@ -34,8 +34,8 @@ class Mesh(ConfigModel):
     triangles: tuple[Corner, ...] = Field(
         min_length=1,
         max_length=MOST_TRIANGLES,
-        description="each by three rows of `vertices`, from 0, counter-clockwise seen from outside, "
-        "that share whole sides. A body whose centre is behind one does not touch it",
+        description="each by three rows of `vertices`, from 0, counter-clockwise seen from "
+        "outside, that share whole sides. A body whose centre is behind one does not touch it",
     )
 
 
