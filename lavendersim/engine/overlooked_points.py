@@ -28,7 +28,7 @@ from .approach import CREEP, NEVER, OVERLAP, make_forced, make_rate, normal
 from .compile import inner, kernel
 from .foreseen_impacts import FLIGHT, make_is_impact
 from .integrate import ALWAYS
-from .records import BOX, HULL, PLANE, SPHERE, TOUCHING
+from .records import BOX, HULL, MESH, PLANE, SPHERE, TOUCHING
 from .spec import Spec
 from .step_terms import step_terms
 from .stiff_springs import make_restitution_of, may_rebound
@@ -48,7 +48,7 @@ def has_flat_faces(body):
 @inner
 def is_flat(body):
     """Whether it touches what is flat by corners alone."""
-    return has_flat_faces(body) or body.shape == PLANE
+    return has_flat_faces(body) or body.shape == PLANE or body.shape == MESH
 
 
 @inner

@@ -2,7 +2,8 @@
 
 With `speculative` contacts are made ahead of touching, so nothing is passed. Without, a contact is
 found only where bodies overlap at the start of a step: two that move past each other by more than
-both are thick may never do so. Planes are half-spaces: what is behind one is found there.
+both are thick may never do so. Planes are half-spaces: what is behind one is found there. A mesh is
+touched only while a body's centre is in front of it: that is half the body's thickness.
 """
 
 from __future__ import annotations
@@ -28,19 +29,36 @@ def crossing(cell: Cell) -> Iterator[Defect]:
         if not isinstance(body.shape, Plane | Cavity | CellMesh)
     }
     thinnest = sorted(solids, key=lambda name: thickness(solids[name].shape))[:2]
+    meshes = {
+        name: body for name, body in config.scene.bodies.items() if isinstance(body.shape, CellMesh)
+    }
     tree = cell.tree
     for name, body in solids.items():
-        other = next((one for one in thinnest if one != name), None)
-        if other is None or not any(body.velocity):
+        if not any(body.velocity):
             continue
-        moved = timestep * _relative_speed(body, solids[other])
-        thick = thickness(body.shape) + thickness(solids[other].shape)
-        if moved > thick:
-            sentence = (
-                f"velocity: {name} and {other} may pass through each other: they close by "
-                f"{moved:.3g} m in a step and are {thick:.3g} m thick; speculative: true meets them"
-            )
-            yield cell.defect((*body_path(tree, name), "velocity"), sentence)
+        path = (*body_path(tree, name), "velocity")
+        other = next((one for one in thinnest if one != name), None)
+        if other is not None:
+            moved = timestep * _relative_speed(body, solids[other])
+            thick = thickness(body.shape) + thickness(solids[other].shape)
+            if moved > thick:
+                sentence = (
+                    f"velocity: {name} and {other} may pass through each other: they close by "
+                    f"{moved:.3g} m in a step and are {thick:.3g} m thick; speculative: true meets "
+                    "them"
+                )
+                yield cell.defect(path, sentence)
+                continue
+        for mesh, surface in meshes.items():
+            moved = timestep * _relative_speed(body, surface)
+            half = 0.5 * thickness(body.shape)
+            if moved > half:
+                sentence = (
+                    f"velocity: {name} may pass through {mesh}: they close by {moved:.3g} m in a "
+                    f"step and half of {name} is {half:.3g} m thick; speculative: true meets it"
+                )
+                yield cell.defect(path, sentence)
+                break
 
 
 def _relative_speed(one: CellBody, other: CellBody) -> float:

@@ -1,6 +1,7 @@
 """Bodies that start inside one another, behind a plane or in the wall of a cavity.
 
-Planes: exactly, by the body's extent against the normal. Spheres, boxes, capsules: the depth of
+Planes: exactly, by the body's extent against the normal. Meshes: by the body's centre: where that
+is behind a triangle nothing of it touches. Spheres, boxes, capsules: the depth of
 `measures.penetration`. Every other pair: GJK between the corners of both, each drawn in by
 DRAWN_IN towards its centre, so that what merely touches is not found.
 """
@@ -32,6 +33,7 @@ from lavendersim.measures.solids import (
 
 DRAWN_IN: Final = 0.01  # share of a shape's size that counts as touching
 MOST_PAIRS: Final = 2000  # that GJK looks at, some 0.2 ms each
+MOST_TRIANGLES: Final = 200_000  # that centres are checked against, some 1 us each
 
 
 class Parts(NamedTuple):
@@ -61,7 +63,12 @@ def overlaps(cell: Cell) -> Iterator[Defect]:
     parts = _parts(bodies)
     if not parts.names:
         return
-    behind = max((*_behind_planes(bodies, parts), *_in_walls(bodies, parts)), default=None)
+    found = (
+        *_behind_planes(bodies, parts),
+        *_in_walls(bodies, parts),
+        *_behind_meshes(bodies, parts),
+    )
+    behind = max(found, default=None)
     if behind is not None:
         how = f"starts {behind.depth:.3g} m behind the surface of {behind.other}"
         yield _defect(cell, behind.name, f"{behind.name} {how}")
@@ -144,6 +151,25 @@ def _in_walls(bodies: dict[str, CellBody], parts: Parts) -> Iterator[Inside]:
             corners = np.zeros((1, 3)) if ball else np.array(shape.corners())
             points = centre + corners @ parts.placed.rotation[row].T
             depth = float(np.linalg.norm(points @ across, axis=1).max()) + ball - body.shape.radius
+            if depth > DRAWN_IN * parts.thickness[row]:
+                yield Inside(depth, parts.names[row], name)
+
+
+def _behind_meshes(bodies: dict[str, CellBody], parts: Parts) -> Iterator[Inside]:
+    """Yield of each mesh the movable solids whose centre is behind it where it is nearest."""
+    left = MOST_TRIANGLES
+    for name, body in bodies.items():
+        if not isinstance(body.shape, CellMesh):
+            continue
+        from lavendersim.geometry.triangle_mesh import depth_behind, surface_of  # few need it
+
+        surface = surface_of(body.shape.vertices, body.shape.triangles)
+        centres = (parts.placed.position - vector(body.position)) @ rotation_of(body)
+        for row in np.flatnonzero(parts.movable):
+            left -= len(surface.triangles)
+            if left < 0:
+                return
+            depth = depth_behind(surface, centres[row])
             if depth > DRAWN_IN * parts.thickness[row]:
                 yield Inside(depth, parts.names[row], name)
 

@@ -18,6 +18,7 @@ from lavendersim.engine.collide.mesh_tables import (
     CORNER,
     EDGE,
     FLAT,
+    FOLDED,
     FREE,
     GROUP,
     NODE,
@@ -163,6 +164,8 @@ def _sides(surface: TriangleSurface, faces: _Faces) -> np.ndarray:
     _put(sides, "n", np.where(beyond[..., None] >= 0, other, own).reshape(-1, 3))
     bend = np.einsum("ijk,ijk->ij", np.cross(own, other), along)  # > 0: the surface turns away
     kind = np.where(bend > 0.0, CONVEX, CONCAVE)
+    opposite = np.einsum("ijk,ijk->ij", np.broadcast_to(own, other.shape), other) < 0.0
+    kind[opposite & (np.abs(bend) <= SAME_PLANE)] = FOLDED
     kind[faces.of[beyond] == faces.of[:, None]] = FLAT
     kind[beyond < 0] = FREE
     sides["kind"] = kind.reshape(-1)
@@ -220,7 +223,7 @@ def _edges(surface: TriangleSurface, faces: _Faces, sides: np.ndarray) -> np.nda
     for side, kind in enumerate(kinds):
         own = groups[side // 3]
         other = groups[beyond[side]] if beyond[side] >= 0 else NOTHING
-        if kind == FREE or (kind == CONVEX and own < other):
+        if kind == FREE or (kind in (CONVEX, FOLDED) and own < other):
             piece = _Piece(side, starts[side], ends[side])
             sharp.append(((own, other), piece))
             at = pieces.setdefault((own, other), {})
@@ -231,18 +234,19 @@ def _edges(surface: TriangleSurface, faces: _Faces, sides: np.ndarray) -> np.nda
 
     def grown(key: tuple[int, int], piece: _Piece, at: int) -> int:
         """Return the corner where the edge through a piece ends beyond one of its ends."""
-        way = surface.vertices[piece.end] - surface.vertices[piece.start]
+        way = surface.vertices[at] - surface.vertices[piece.start + piece.end - at]
         way /= np.linalg.norm(way)
         while around[at] == {one for one in key if one >= 0}:
             for following in pieces[key][at]:
                 if following.side in taken:
                     continue
-                other = surface.vertices[following.end] - surface.vertices[following.start]
+                end = following.start + following.end - at
+                other = surface.vertices[end] - surface.vertices[at]
                 turn = np.cross(way, other / np.linalg.norm(other))
-                if float(turn @ turn) <= STRAIGHT**2:
+                if float(way @ other) > 0.0 and float(turn @ turn) <= STRAIGHT**2:
                     taken.add(following.side)
                     sides["edge"][following.side] = len(rows)
-                    at = following.start + following.end - at
+                    at = end
                     break
             else:
                 break
@@ -256,7 +260,7 @@ def _edges(surface: TriangleSurface, faces: _Faces, sides: np.ndarray) -> np.nda
         start, end = grown(key, piece, piece.start), grown(key, piece, piece.end)
         rows.append((piece.side, start, end))
     for side in range(len(sides)):
-        if kinds[side] == CONVEX and sides["edge"][side] < 0:
+        if kinds[side] in (CONVEX, FOLDED) and sides["edge"][side] < 0:
             sides["edge"][side] = sides["edge"][twin[ends[side], starts[side]]]
     edges = np.zeros(len(rows), dtype(EDGE))
     for edge, (side, start, end) in zip(edges, rows, strict=True):

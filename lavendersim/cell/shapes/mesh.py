@@ -14,7 +14,7 @@ from lavendersim.quantities.quantity import Vector3
 
 
 class CellMesh(ResolvedModel):
-    """A surface of triangles, whose corners turn left seen from outside."""
+    """A surface of triangles, whose corners run counter-clockwise seen from outside."""
 
     kind: Literal["mesh"]
     vertices: tuple[Vector3, ...]  # [m]

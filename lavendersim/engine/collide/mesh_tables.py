@@ -4,7 +4,7 @@
                 walk goes on at k + 1 where it meets the box, else at skip
     group       triangles in one plane that hang together: one face, whose inner edges are none
     side 3t+k   of triangle t, from corner k to the next: what lies beyond it
-    edge        a convex or free edge, as long as it is straight between the same two faces
+    edge        a convex, folded or free edge, as long as it is straight between the same two faces
     corner      an end of edges, with the directions of all sides of triangles that end there
 
 All coordinates are those of the body's frame [m].
@@ -20,8 +20,9 @@ from ..records import F8, I8, POINT, Field, dtype
 
 XYZ = "xyz"
 
-# What lies beyond a side: nothing; the same plane; a face that turns away; one that comes towards.
-FREE, FLAT, CONVEX, CONCAVE = 0, 1, 2, 3
+# What lies beyond a side: nothing; the same plane; a face that turns away; one that comes towards;
+# one that turns right round, so that the side is the rim of a sheet with two faces.
+FREE, FLAT, CONVEX, CONCAVE, FOLDED = 0, 1, 2, 3, 4
 
 
 def _vector(name: str) -> list[Field]:
@@ -78,10 +79,15 @@ class MeshTables(NamedTuple):
 
 
 def with_room(tables: MeshTables, bodies: np.dtype, most_points: int) -> MeshTables:
-    """Return tables with what kernels work in; most_points: of one body on one face."""
+    """Return tables with what kernels work in; most_points: of one body on one face.
+
+    What they have `seen` is marked in copies: engines of one scene share the tables.
+    """
     sharp, faces = len(tables.edges), len(tables.groups)
     room = 2 * most_points * min(faces, 64) + 4 * (faces + sharp) + 64
     return tables._replace(
+        groups=tables.groups.copy(),
+        edges=tables.edges.copy(),
         stamp=np.zeros(1, np.int64),
         row=np.zeros(1, bodies),
         points=np.zeros(room, dtype(POINT)),

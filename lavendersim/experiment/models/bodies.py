@@ -136,7 +136,8 @@ class Body(_Matter):
     )
     position: Position | None = Field(
         default=None,
-        description="[m] centre of mass, world frame; of planes neither this nor a release",
+        description="[m] centre of mass, world frame; of a mesh or height field the origin of its "
+        "frame; of planes neither this nor a release",
     )
     release: Release | None = Field(
         default=None, description="start above a plane, instead of a position; of what can move"

@@ -22,18 +22,20 @@ HeightsAlongY = Annotated[
 
 
 class Mesh(ConfigModel):
-    """A surface of triangles; the outside is where their corners turn left."""
+    """A surface of triangles, touched from outside: where their corners run counter-clockwise."""
 
     kind: Literal["mesh"]
     vertices: tuple[Position, ...] = Field(
         min_length=3,
         max_length=MOST_VERTICES,
-        description="[m] in the body's frame; those at one place are one",
+        description="[m] in the body's frame, whose origin is `position`; those at one place, to "
+        "the last bit, are one",
     )
     triangles: tuple[Corner, ...] = Field(
         min_length=1,
         max_length=MOST_TRIANGLES,
-        description="each by three rows of `vertices`, from 0, that turn left seen from outside",
+        description="each by three rows of `vertices`, from 0, counter-clockwise seen from "
+        "outside, that share whole sides. A body whose centre is behind one does not touch it",
     )
 
 
@@ -45,7 +47,9 @@ class HeightField(ConfigModel):
         min_length=2,
         max_length=MOST_TRIANGLES,
         description="[m] along the body's z: a row for each x, in it one for each y; the grid's "
-        "middle is the body's origin",
+        "middle is the body's origin. The diagonal of a cell leads from its row and height i, j to "
+        "i + 1, j + 1 where i + j is even, else from i + 1, j to i, j + 1. A body whose centre is "
+        "below does not touch it",
     )
     spacing: Annotated[tuple[float, float], Vector(2, Quantity("m", above=0))] = Field(
         description="[m] between two rows along x, and between two heights along y"

@@ -26,8 +26,12 @@ def resolve_surface(shape: Mesh | HeightField) -> CellMesh:
     try:
         surface_of(vertices, triangles)
     except MeshError as error:
-        where = ("triangles", error.triangle) if isinstance(shape, Mesh) else ("heights",)
-        raise SceneError(where, f"triangle {error.triangle}: {error}") from None
+        if isinstance(shape, Mesh):
+            where: tuple[str | int, ...] = ("triangles", error.triangle)
+            raise SceneError(where, f"triangle {error.triangle}: {error}") from None
+        row, column = divmod(error.triangle // 2, len(shape.heights[0]) - 1)
+        cell = f"a triangle between rows {row} and {row + 1}, heights {column} and {column + 1}"
+        raise SceneError(("heights",), f"{cell}: {error}") from None
     return CellMesh(kind="mesh", vertices=vertices, triangles=triangles)
 
 

@@ -22,8 +22,10 @@ from lavendersim.engine.records import (
     CAPSULE,
     CYLINDER,
     HULL,
+    MESH,
     MOTION,
     OVERLOOKED,
+    PLANE,
     SPHERE,
     dtype,
 )
@@ -149,20 +151,22 @@ def test_a_row_that_would_meet_at_once_is_a_contact_of_the_part() -> None:
     assert part.pairs["whole"][0] == 1
 
 
-def sinks(shape: int, gap: float, depth: float, waits: int = 0) -> bool:
+def sinks(shape: int, gap: float, depth: float, waits: int = 0, floor: int = PLANE) -> bool:
     """Whether a part is made again that leads a point, `gap` above a plane, `depth` deep."""
     part = Part(gap, waits)
+    part.bodies["shape"][0] = floor
     part.bodies["shape"][1] = shape
     part.parameters["slop"] = SLOP
     down = {"vz": -(depth + gap) / DT}
     return part.look(down, down) > 0.0
 
 
+@pytest.mark.parametrize("floor", [PLANE, MESH])
 @pytest.mark.parametrize("shape", [BOX, HULL])
-def test_a_corner_of_a_face_that_touches_may_sink_by_the_slop(shape: int) -> None:
+def test_a_corner_of_a_face_that_touches_may_sink_by_the_slop(shape: int, floor: int) -> None:
     for gap in (0.0, 0.9 * SLOP):
-        assert not sinks(shape, gap, 0.9 * SLOP)
-        assert sinks(shape, gap, 1.1 * SLOP)
+        assert not sinks(shape, gap, 0.9 * SLOP, floor=floor)
+        assert sinks(shape, gap, 1.1 * SLOP, floor=floor)
 
 
 def test_one_that_is_apart_or_waits_or_of_a_rim_may_sink_deep() -> None:

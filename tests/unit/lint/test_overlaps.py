@@ -81,6 +81,21 @@ def test_bodies_that_never_move_may_overlap() -> None:
     assert found(config(*fixed, body("c", "box", 5.0))) == []
 
 
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_body_whose_centre_is_behind_a_mesh_is_found(shape: str) -> None:
+    """A slope of 4/3 along x through the origin, turned by 180 degrees about x: behind is above."""
+    ground = "kind: height_field, heights: [[-4, -4], [4, 4]], spacing: [6, 6]"
+    deep = 0.75 if shape == "compound" else 0.6  # of the centre of its lower part, or its own
+    for turn, above in (("0", 1.0), ("180", -1.0)):
+        pose = f"position: [0, 0, 5], orientation: {{axis: [0, 1, 0], degrees: {turn}}}"
+        mesh = f"ground: {{shape: {{{ground}}}, {pose}}}"
+        assert found(config(body("a", shape, 0.0, 5.0 + above), mesh)) == []
+        (defect,) = found(config(body("a", shape, 0.0, 5.0 - above), mesh))
+        assert defect.message.startswith(f"a starts {deep} m behind the surface of ground")
+        beside_its_rim = body("a", shape, above * 12.0, 5.0 - above)
+        assert found(config(beside_its_rim, mesh)) == []
+
+
 @pytest.mark.parametrize("cavity", ["bowl", "drum"])
 @pytest.mark.parametrize("shape", ["sphere", "box"])
 def test_a_body_in_the_wall_around_it_is_found_by_how_deep_it_is(cavity: str, shape: str) -> None:

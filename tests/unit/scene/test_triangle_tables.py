@@ -7,7 +7,8 @@ import pytest
 from mesh_tables_of import BOX, GRID
 
 from lavendersim.cell import CellMesh
-from lavendersim.engine.collide.mesh_tables import CONCAVE, CONVEX, FLAT, FREE
+from lavendersim.engine.collide.mesh_tables import CONCAVE, CONVEX, FLAT, FOLDED, FREE
+from lavendersim.geometry import triangle_mesh
 from lavendersim.scene.triangle_tables import mesh_tables
 
 
@@ -39,6 +40,27 @@ def test_a_fold_is_convex_where_it_turns_away(height: float, kind: int) -> None:
     tables, _ = mesh_tables([fold])
     assert sorted(tables.sides["kind"]) == sorted([FREE] * 4 + [kind] * 2)
     assert len(tables.edges) == (5 if kind == CONVEX else 4)
+
+
+def test_a_sheet_with_two_faces_has_a_rim() -> None:
+    sheet = CellMesh(
+        kind="mesh",
+        vertices=((0.1, 0.2, 0.3), (1, 0.3, 0.7), (0.4, 1, 0.9)),
+        triangles=((0, 1, 2), (0, 2, 1)),
+    )
+    tables, _ = mesh_tables([sheet])
+    assert (len(tables.groups), len(tables.edges)) == (2, 3)
+    assert set(tables.sides["kind"]) == {FOLDED}
+    assert sorted(tables.sides["edge"]) == [0, 0, 1, 1, 2, 2]
+
+
+def test_a_straight_edge_does_not_turn_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sides that overlap, as where a large mesh is not looked through, make no edge of length 0."""
+    monkeypatch.setattr(triangle_mesh, "MOST_RIM", 0)
+    places = ((0, 0, 0), (2, 0, 0), (1, 0, 0), (1, -1, 0), (1, 1, 0), (3, 0, 0))
+    triangles = ((0, 3, 1), (0, 2, 4), (2, 1, 4), (3, 5, 1), (1, 5, 4))
+    tables, _ = mesh_tables([CellMesh(kind="mesh", vertices=places, triangles=triangles)])
+    assert (tables.edges["length"] >= 0.5).all()
 
 
 def test_a_walk_that_meets_every_box_comes_by_every_triangle_once() -> None:

@@ -15,7 +15,7 @@ So a normal is that of a face, or lies between those of the faces around its edg
 the distance to the surface is least. Edges inside of a face, and concave ones, have no points. The
 outside is where normals point. A body whose centre is behind a face's plane does not touch it.
 A point of B that is inside (h < 0) touches of two faces at a convex edge the one it is less deep
-under, of two at a concave edge both.
+under, of those that B's centre is in front of; of two at a concave edge both, near that edge.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...compile import inner, kernel
-from ...records import MESH, TOUCHING
+from ...records import BOX, MESH, TOUCHING
 from ...spec import Spec
 from ...vectors import (
     Vec3,
@@ -88,23 +88,31 @@ def meets(node, centre, half):
 
 
 @inner
-def is_within(side, p, h):
-    """Whether a point at height h over a triangle's plane is on its side of one of its sides."""
+def is_within(side, p, h, centre, near):
+    """Whether a point at height h over a triangle's plane is on its side of one of its sides.
+
+    Beyond a concave side it still is within `near` [m], where it is inside the face there. centre:
+    of the body; a face yields to none that it is behind, which would not touch it.
+    """
     from_side = minus(p, Vec3(side.x, side.y, side.z))
     inward = dot(Vec3(side.mx, side.my, side.mz), from_side)
     if side.kind == CONVEX and h < 0.0:
-        return h >= dot(Vec3(side.nx, side.ny, side.nz), from_side) - TOUCHING
-    if side.kind == CONCAVE and inward < -TOUCHING:
+        beyond, own = Vec3(side.nx, side.ny, side.nz), minus(centre, Vec3(side.x, side.y, side.z))
+        if dot(beyond, own) > 0.0:
+            return h >= dot(beyond, from_side) - TOUCHING
+    if side.kind == CONCAVE and -TOUCHING - near <= inward < -TOUCHING:
         return dot(Vec3(side.nx, side.ny, side.nz), from_side) <= TOUCHING
     return inward >= -TOUCHING
 
 
 @inner
-def is_over(mesh, tables, group, p, h, near):
+def is_over(mesh, tables, group, p, h, of_body):
     """Whether a point in the mesh's frame at height h over a group's plane is over its triangles.
 
-    near: how far beyond a triangle it may be and still be inside of it [m].
+    of_body: its centre in this frame, and how far beyond a triangle a point of it may be and still
+    be inside of it [m].
     """
+    centre, near = of_body
     face = tables.groups[group]
     n = Vec3(face.nx, face.ny, face.nz)
     foot = plus_scaled(p, face.offset - dot(n, p), n)
@@ -120,7 +128,7 @@ def is_over(mesh, tables, group, p, h, near):
         if t >= 0 and tables.triangles[t].group == group:
             inside = True
             for s in range(3 * t, 3 * t + 3):
-                inside = inside and is_within(tables.sides[s], point, h)
+                inside = inside and is_within(tables.sides[s], point, h, centre, near)
             if inside:
                 return True
         k += 1
@@ -129,9 +137,14 @@ def is_over(mesh, tables, group, p, h, near):
 
 @inner
 def put(tables, point, n, feature):
-    """Put a point with its normal and name behind those there are, while there is room."""
+    """Put a point with its normal and name behind those there are, while there is room.
+
+    One that is left out gives its place up.
+    """
     k = tables.counts[KEPT]
-    if k + tables.counts[LEFT] < tables.points.shape[0]:
+    if k < tables.points.shape[0]:
+        if k + tables.counts[LEFT] == tables.points.shape[0]:
+            tables.counts[LEFT] -= 1
         copy_point(point, tables.points[k])
         tables.points[k].feature = feature
         tables.normals[3 * k], tables.normals[3 * k + 1], tables.normals[3 * k + 2] = n
@@ -175,19 +188,22 @@ def make_put_face(spec: Spec, touch_plane: Any) -> Any:
         found = touch_plane(row, body, margin, scratch)
         total = found + reduction[LEFT_OUT]
         grown, near = radius(body), NEAR * body.bound
+        of_body = into_mesh(mesh, position(body)), near
         inside, kept = 0, 0
         for k in range(total):
             if k == found:
                 kept = inside
             point = points[k]
             h = point.phi + grown
-            if is_over(mesh, tables, group, into_mesh(mesh, position(point)), h, near):
+            if is_over(mesh, tables, group, into_mesh(mesh, position(point)), h, of_body):
                 if inside < k:
                     swap_points(points[inside], points[k])
                 inside += 1
         if found == total:
             kept = inside
-        if kept < found and reduction[WHOLE] == 0:
+        # Of a box the corners of the lower face came first: no upper one takes a lower one's place.
+        chosen = body.shape == BOX and kept > 0
+        if kept < found and not chosen and reduction[WHOLE] == 0:
             kept = keep_four(points, inside, n)
         for k in range(inside):
             point = points[k]

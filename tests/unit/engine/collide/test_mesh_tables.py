@@ -34,6 +34,14 @@ def test_room_grows_with_faces_edges_and_what_one_face_may_have() -> None:
     assert len(with_room(tables(6, 12), bodies, 200).points) >= 6 * 200
 
 
+def test_what_is_seen_is_marked_in_rows_of_its_own() -> None:
+    shared, bodies = tables(2, 3), dtype(BODY)
+    for rooms in (with_room(shared, bodies, 20), with_room(shared, bodies, 20)):
+        assert not rooms.groups["seen"].any()
+        assert not rooms.edges["seen"].any()
+        rooms.groups["seen"] = rooms.edges["seen"] = 1
+
+
 def test_a_manifold_has_as_much_room_as_a_mesh_may_have_points() -> None:
     scratch = allocate_scratch(None, True, tables(50, 300), dtype(BODY))
     assert len(scratch.manifold.points) >= len(scratch.meshes.points)

@@ -33,6 +33,14 @@ def test_rows_of_other_lengths_are_refused() -> None:
         resolve_surface(field(((0.0, 0.0), (0.0, 0.0, 0.0))))
 
 
+def test_a_cell_at_fault_is_named_by_its_place_in_heights() -> None:
+    """A slope of 1e9 makes a triangle that is a line but for round-off."""
+    heights = ((0.0, 0.0, 0.0), (0.0, 0.0, 1e9))
+    with pytest.raises(SceneError, match=r"between rows 0 and 1, heights 1 and 2: .* a line") as it:
+        resolve_surface(field(heights))
+    assert it.value.path == ("heights",)
+
+
 def mesh(*triangles) -> Mesh:
     vertices = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0))
     return Mesh(kind="mesh", vertices=vertices, triangles=triangles)
@@ -42,7 +50,7 @@ def mesh(*triangles) -> Mesh:
     ("triangles", "path", "sentence"),
     [
         (((0, 1, 4),), ("triangles", 0, 2), "there are 4 vertices, counted from 0; found 4"),
-        (((0, 1, 2), (0, 1, 3)), ("triangles", 1), "triangle 1: its normal is opposite"),
+        (((0, 1, 2), (0, 1, 3)), ("triangles", 1), "triangle 1: its corners run the other way"),
         (((0, 0, 2),), ("triangles", 0), "triangle 0: its corners lie on a line"),
     ],
 )
