@@ -59,7 +59,7 @@ def next_step(engine: Engine, spec: Spec) -> Prepared:
         engine.velocities.copy(),
         engine.parameters,
         engine.counters,
-        spec.without("newton")._replace(shape_pairs=()),
+        spec.without("newton", "supernodes")._replace(shape_pairs=()),
     )
 
 

@@ -6,7 +6,7 @@ minimum degree bodies are eliminated where they tie together the fewest others, 
 tied alike form supernodes, whose rows are dense (`solvers.newton.panels`). Which of the two a
 contact graph gets follows from counted operations; an order is kept while the graph stands.
 
-What stands is solved once, and a sweep a step keeps it. A heap of bodies that touch in single
+What stands is solved once, and a sweep a step keeps it. A heap with bodies that touch in single
 points is solved anew in every step: thirty in which a thousand spheres land all to 1e-9 m/s instead
 of 1e-2, in a hundred times the time of the sweeps (`tests/benchmarks/large_scenes.py`). That is for
 configs that ask for it, by `effects: {supernodes: on}`. Where a factor takes more than some 12,000
@@ -31,7 +31,7 @@ def decide(facts: Facts) -> Decision:
         return Decision(False, f"{movable} movable bodies, fewer than {FEWEST_BODIES}")
     if not newton.decide(facts).on:
         return Decision(False, "no solve is finished by Newton's method")
-    if all(body.shape in newton.ONE_POINT for body in facts.bodies):
+    if any(body.shape in newton.ONE_POINT for body in facts.bodies if body.movable):
         return Decision(False, "heaps of bodies that touch in single points are left to sweeps")
     return Decision(True, f"the factor of {movable} bodies may fill less in another order")
 

@@ -57,7 +57,7 @@ def _settling(packs: bool, shape: str) -> Bench:
             else:
                 bodies[f"body_{k}_{j}"] = box((0.2, 0.2, 0.2), place, mass=mass)
     cell = resolved(bodies, (0.0, 0.0, -G), solver="adaptive", sweeps=200, warm_start=False)
-    spec = planned(cell).spec.without("packed_sweeps", "newton", "least_norm")
+    spec = planned(cell).spec.without("packed_sweeps", "newton", "least_norm", "supernodes")
     bench = Bench(cell, spec.including("packed_sweeps") if packs else spec)
     bench.run(1)
     return bench
