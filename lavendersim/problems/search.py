@@ -32,7 +32,7 @@ LATER_SWEEPS, LATER, GROWTH = 1000, 2, 2
 # Cost of a sweep per block of W [ns].
 SWEEP_COST = 6.0
 # Where contacts are many: so many sweeps at a time, as long as they leave no more than this share.
-TURN_OF_SWEEPS, PAYS = 1000, 0.5
+TURN_OF_SWEEPS, PAYS = 10_000, 0.5
 # A method aims below the tolerance by this: the judge rounds otherwise [-].
 MARGIN = 0.5
 
