@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from fuzz_drives import motion
+from fuzz_drives import set_in_motion
 
 EVERY = 6  # of so many scenes one has a cavity, in the mean
 
@@ -36,13 +36,7 @@ def cavity(pen: Any, bodies: dict[str, Any], sizes: dict[str, float]) -> None:
     }
     if pen.has("surface_velocity"):
         body["surface_velocity"] = pen.vector(pen.power(-2.0, 1.0))
-    driven = pen.one_of(("", "velocity", "motion"))
-    if driven == "motion" and pen.has("prescribed_motion"):
-        body |= {"kinematic": True, "motion": motion(pen, pen.duration)}
-    elif driven and "kinematic" in pen.plan.effects and not pen.calm:
-        body |= {"kinematic": True, "angular_velocity": pen.vector(pen.power(-2.0, 2.0))}
-        if pen.coin():
-            body["velocity"] = pen.vector(pen.power(-2.0, 1.0))
+    set_in_motion(pen, body, 2.0)
     bodies["cavity"] = body
 
 

@@ -167,3 +167,17 @@ def paired(pen: Any, bodies: dict[str, Any]) -> dict[str, Any]:
     for k, name in enumerate(named):
         bodies[name]["surface"] = f"surface_{k}"
     return {"surfaces": surfaces, "surface_pairs": {"both": {"between": [*surfaces], **between}}}
+
+
+def set_in_motion(pen: Any, body: dict[str, Any], fastest: float) -> None:
+    """Give what no other body moves its motion, in some scenes none.
+
+    fastest: power of ten of the greatest angular velocity [rad/s].
+    """
+    driven = pen.one_of(("", "velocity", "motion"))
+    if driven == "motion" and pen.has("prescribed_motion"):
+        body |= {"kinematic": True, "motion": motion(pen, pen.duration)}
+    elif driven and "kinematic" in pen.plan.effects and not pen.calm:
+        body |= {"kinematic": True, "angular_velocity": pen.vector(pen.power(-2.0, fastest))}
+        if pen.coin():
+            body["velocity"] = pen.vector(pen.power(-2.0, 1.0))

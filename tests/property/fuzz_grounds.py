@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from fuzz_drives import motion
+from fuzz_drives import set_in_motion
 
 EVERY = 8  # of so many scenes one has a ground, in the mean
 
@@ -35,13 +35,7 @@ def ground(pen: Any, bodies: dict[str, Any], sizes: dict[str, float]) -> None:
         "orientation": pen.turn(),
         "surface": pen.surface(size),
     }
-    driven = pen.one_of(("", "velocity", "motion"))
-    if driven == "motion" and pen.has("prescribed_motion"):
-        body |= {"kinematic": True, "motion": motion(pen, pen.duration)}
-    elif driven and "kinematic" in pen.plan.effects and not pen.calm:
-        body |= {"kinematic": True, "angular_velocity": pen.vector(pen.power(-2.0, 1.0))}
-        if pen.coin():
-            body["velocity"] = pen.vector(pen.power(-2.0, 1.0))
+    set_in_motion(pen, body, 1.0)
     bodies["ground"] = body
 
 
