@@ -147,32 +147,27 @@ def make_keep(spec: Spec):
     return kernel(keep, spec)
 
 
-@inner
-def step_cost(system, workspace):
-    """Return (unknown bodies, multiplications of a step), infinite for what the arrays cannot hold.
-
-    What it lays out in the workspace is what `make_newton`'s kernel begins with. No impulse is
-    read: it holds for a whole solve.
-    """
-    size, entries, work = lay_out(system.contacts, system.count, workspace)
-    if size == 0 or entries > workspace.values.shape[0]:
-        return size, inf
-    return size, float(work + ASSEMBLY * system.count)
-
-
-def make_step_cost(spec: Spec) -> Any:
-    """Return the same kernel for an engine, with the order of its bodies that costs less."""
-    if not eliminates(spec):
-        return step_cost
-    lay_out = make_lay_out(spec)
-
-    def step_cost_of_either(system, workspace):
+def _step_cost_by(lay_out: Any) -> Any:
+    def step_cost(system, workspace):
         size, entries, work = lay_out(system.contacts, system.count, workspace)
         if size == 0 or entries > workspace.values.shape[0]:
             return size, inf
-        return size, work + float(ASSEMBLY * system.count)
+        return size, float(work + ASSEMBLY * system.count)
 
-    return kernel(step_cost_of_either, spec)
+    return step_cost
+
+
+# `kernel(system, workspace)` -> unknown bodies, multiplications of a step: infinite for what the
+# arrays cannot hold. What it lays out in the workspace is what `make_newton`'s kernel begins with.
+# No impulse is read: it holds for a whole solve.
+step_cost = inner(_step_cost_by(lay_out))
+
+
+def make_step_cost(spec: Spec) -> Any:
+    """Return `step_cost` for an engine, with the order of its bodies that costs less."""
+    if not eliminates(spec):
+        return step_cost
+    return kernel(_step_cost_by(make_lay_out(spec)), spec)
 
 
 def make_newton(spec: Spec):
