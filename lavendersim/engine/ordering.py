@@ -68,9 +68,7 @@ def make(spec: Spec):
             return
         for i in range(bodies.shape[0]):
             colour_mask[i] = 0
-        for k in range(BUCKETS + 1):
-            bucket_ends[k] = 0
-        colour, row = 0, 0
+        colour, row, last = 0, 0, 0
         for c in range(count):
             contact = contacts[c]
             if c == 0 or contact.key != contacts[c - 1].key:
@@ -89,8 +87,13 @@ def make(spec: Spec):
             bucket = colour * MANIFOLD_ROWS + row
             row = min(row + 1, MANIFOLD_ROWS - 1)
             bucket_of[c] = bucket
-            bucket_ends[bucket + 1] += 1
-        for k in range(BUCKETS):
+            last = max(last, bucket)
+        # A stack has two colours: buckets that hold nothing would cost more than its rows.
+        for k in range(last + 2):
+            bucket_ends[k] = 0
+        for c in range(count):
+            bucket_ends[bucket_of[c] + 1] += 1
+        for k in range(last):
             bucket_ends[k + 1] += bucket_ends[k]
         for c in range(count):
             bucket = bucket_of[c]
