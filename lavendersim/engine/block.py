@@ -55,8 +55,11 @@ def point_response(v, inv_m, r, p):
 def block_response(contact, va, vb, x, y, z):
     """Relative velocity that a unit impulse (x, y, z) on B, and its opposite on A, gives [1/kg]."""
     p = Vec3(x, y, z)
-    a = point_response(va, contact.inv_m_a, Vec3(contact.rax, contact.ray, contact.raz), p)
-    b = point_response(vb, contact.inv_m_b, Vec3(contact.rbx, contact.rby, contact.rbz), p)
+    a = b = Vec3(0.0, 0.0, 0.0)
+    if contact.inv_m_a > 0.0:
+        a = point_response(va, contact.inv_m_a, Vec3(contact.rax, contact.ray, contact.raz), p)
+    if contact.inv_m_b > 0.0:
+        b = point_response(vb, contact.inv_m_b, Vec3(contact.rbx, contact.rby, contact.rbz), p)
     return a.x + b.x, a.y + b.y, a.z + b.z
 
 

@@ -87,7 +87,7 @@ def make_first_stop(spec: Spec) -> Any:
 
     params.dt: what is left of the step. Of rows that take part in it.
     """
-    from ..approach import NEVER, SHORT, make_slowest, normal, relative_velocity
+    from ..approach import CREEP, NEVER, SHORT, make_slowest, normal, relative_velocity
     from ..block import set_tangents
     from ..records import PLANE
     from ..row_terms import row_terms
@@ -150,8 +150,9 @@ def make_first_stop(spec: Spec) -> Any:
                 when = min(when, one)
         return when
 
+    turning = rolling or torsional
     turning_stops: Any = None
-    if rolling or torsional:
+    if turning:
         turning_stops = kernel(when_turning_stops, spec)
 
     def first_stop(state, count, params, counters):
@@ -163,16 +164,20 @@ def make_first_stop(spec: Spec) -> Any:
             contact = state.contacts[c]
             if contact.waits == 1 or contact.phi > params.slop:
                 continue
-            pair, least = pairs[contact.pair], slowest(contact, bodies, motion)
+            pair, s = pairs[contact.pair], Vec3(0.0, 0.0, 0.0)
+            if pair.friction > 0.0:
+                s = slip(contact, bodies, motion)
+            if not turning:
+                if dot(s, s) <= CREEP * CREEP:
+                    continue
+            least = slowest(contact, bodies, motion)
             # What nears or leaves is not pressed as the part begins: no friction of it can change.
             if abs(contact.rate) > least:
                 continue
-            if pair.friction > 0.0:
-                s = slip(contact, bodies, motion)
-                if dot(s, s) > least * least:
-                    rate = slip_rate(contact, bodies)
-                    first = min(first, vanishes(s, rate, least, left, shortest))
-            if rolling or torsional:
+            if dot(s, s) > least * least:
+                rate = slip_rate(contact, bodies)
+                first = min(first, vanishes(s, rate, least, left, shortest))
+            if turning:
                 when = turning_stops(contact, pair, bodies, motion, least, (left, shortest))
                 first = min(first, when)
         if first < left:
