@@ -26,7 +26,7 @@ from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
 from .pairs import SHAPE_PAIRS
 from .records import put_normal
 from .rope import make_rope
-from .swept import make_is_fast, make_swept_manifold
+from .swept import make_is_apart, make_is_fast, make_swept_manifold
 
 # Springs may give in a step what they store, or hit a body that does not move yet, which then
 # meets others: contacts by `contact_spring_law` are looked for so many reaches of the fastest
@@ -131,6 +131,8 @@ def make(spec: Spec):
     speculative = step_terms(spec).ahead
     sweeps = row_terms(spec).swept
     is_fast: Any = make_is_fast(spec) if sweeps else None
+    culls = sweeps and not spec.has("broad_phase")
+    is_apart: Any = make_is_apart(spec) if culls else None
     swept_manifold: Any = make_swept_manifold(spec, manifold) if sweeps else None
     share = 0.5 if step_terms(spec).mean_flight else 1.0
     compound, ropes = has_hook(spec, "place_parts"), row_terms(spec).taut
@@ -175,6 +177,9 @@ def make(spec: Spec):
                 if springs:
                     if is_soft(pairs[p]):
                         margin = max(margin, widest)
+            if culls:
+                if is_apart(bodies[i], bodies[j], margin):
+                    continue
             if sweeps:
                 d = displacement(motion[owner_i], motion[owner_j], share, dt)
                 fast = is_fast(bodies[i], bodies[j], d)

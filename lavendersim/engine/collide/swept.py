@@ -33,7 +33,7 @@ from ..compile import inner, kernel
 from ..effects.fast_bodies import FAST
 from ..records import BOWL, DRUM, MESH, PLANE, ROPE_END, TOUCHING
 from ..spec import Spec
-from ..vectors import Vec3, dot, length, plus_scaled, position
+from ..vectors import Vec3, dot, length, minus, plus_scaled, position
 from .convex.separation import make_separation
 from .iteration_limits import needs_separation
 from .manifold.own_normals import point_normal
@@ -61,27 +61,50 @@ class Impact(NamedTuple):
     normal: Vec3  # there
 
 
+def make_is_apart(spec: Spec):
+    """Return `kernel(a, b, margin)`: whether no swept contact of these two can be within a margin.
+
+    Between here and there they move by a margin at most. Never with what is not fast, see below.
+    """
+    has_size = _make_has_size(spec)
+
+    def is_apart(a, b, margin):
+        d, reach = minus(position(b), position(a)), a.bound + b.bound + 2.0 * margin
+        return dot(d, d) > reach * reach and has_size(a) and has_size(b)
+
+    return kernel(is_apart, spec)
+
+
 def make_is_fast(spec: Spec):
     """Return `kernel(a, b, d)`: whether the displacement d relative to each other exceeds FAST R.
 
     Never with a plane: its normal is the same from everywhere; nor in a cavity, whose distance is
     no convex function of the way; nor the ends of ropes and joints.
     """
-    ends, cavities = spec.connects, has_cavity(spec)
+    has_size = _make_has_size(spec)
 
     def is_fast(a, b, d):
-        if a.shape == PLANE or b.shape == PLANE:
+        if not (has_size(a) and has_size(b)):
             return False
-        if cavities:
-            if a.shape == BOWL or a.shape == DRUM:
-                return False
-        if ends:
-            if a.shape == ROPE_END:
-                return False
         far = FAST * min(a.bound, b.bound)
         return dot(d, d) > far * far
 
     return kernel(is_fast, spec)
+
+
+def _make_has_size(spec: Spec):
+    ends, cavities = spec.connects, has_cavity(spec)
+
+    def has_size(body):
+        if cavities:
+            if body.shape == BOWL or body.shape == DRUM:
+                return False
+        if ends:
+            if body.shape == ROPE_END:
+                return False
+        return body.shape != PLANE
+
+    return kernel(has_size, spec)
 
 
 @inner
