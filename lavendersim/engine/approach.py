@@ -247,6 +247,32 @@ def make_slowest(spec: Spec) -> Any:
     return kernel(slowest, spec)
 
 
+def make_is_still(spec: Spec) -> Any:
+    """Return `kernel(bodies, motion) -> whether` no two surfaces can be found to move."""
+    turns, drums = step_terms(spec).turns, has_drum(spec)
+
+    def is_still(bodies, motion):
+        for i in range(motion.shape[0]):
+            m = motion[i]
+            squared = m.vx * m.vx + m.vy * m.vy + m.vz * m.vz
+            if turns:
+                spin = m.wx * m.wx + m.wy * m.wy + m.wz * m.wz
+                endless = bodies[i].shape == PLANE
+                if drums:
+                    endless = endless or bodies[i].shape == DRUM
+                if endless:
+                    if spin > 0.0:
+                        return False
+                else:
+                    squared += bodies[i].bound * bodies[i].bound * spin
+            # Speeds of both bodies and of both their spins add up.
+            if not squared <= CREEP * CREEP / 16.0:
+                return False
+        return True
+
+    return kernel(is_still, spec)
+
+
 def make_gap_acceleration(spec: Spec) -> Any:
     """Return `kernel(contact, bodies, motion) -> a` of its gap, at most, with free motion [m/s^2].
 

@@ -107,6 +107,7 @@ def make_order(spec: Spec) -> Any:
         make_approach,
         make_depth,
         make_expect,
+        make_is_still,
     )
     from ..flush_contacts import make_drop_flush
     from ..foreseen_impacts import make_follow, make_foresee, make_let_rebound, make_rebounds
@@ -132,6 +133,8 @@ def make_order(spec: Spec) -> Any:
     stops, first_stop = made_once(spec, "first_stop")
     driven = reaches_speeds(spec)
     first_reach: Any = make_first_reach(spec) if driven else None
+    # Where no motor starts anything and no surface moves in its body, what is still stays so.
+    rests, is_still = not driven and not spec.has("surface_velocity"), make_is_still(spec)
 
     def first_due(contacts, count):
         first, due = -1, NEVER
@@ -142,8 +145,9 @@ def make_order(spec: Spec) -> Any:
 
     first_due = kernel(first_due, spec)
 
-    def begin_order(state, count):
+    def begin_order(state, count, still):
         # Whether anything moves that touches or may: what rests on each other has no order.
+        # still: no surfaces move, whose rates would be below what counts.
         bodies, motion, contacts = state.bodies, state.motion, state.contacts
         moves = False
         for c in range(count):
@@ -161,6 +165,8 @@ def make_order(spec: Spec) -> Any:
                 moves = True
             elif contact.phi < -OVERLAP:
                 moves = True
+            if still:
+                continue
             contact.rate = approach(contact, bodies, motion)
             if abs(contact.rate) > CREEP:
                 moves = True
@@ -183,7 +189,11 @@ def make_order(spec: Spec) -> Any:
     def order(state, count, workspace, params, counters):
         bodies, motion, contacts = state.bodies, state.motion, state.contacts
         left = params.dt
-        if not begin_order(state, count):
+        still = rests and is_still(bodies, motion)
+        if still:
+            if not begin_order(state, count, True):
+                return count, left
+        if not begin_order(state, count, False):
             return count, until_stop(state, count, left, params, counters)
         expect(state.contacts, count, bodies, motion, left)
         if edged:
