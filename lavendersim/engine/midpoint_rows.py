@@ -17,7 +17,7 @@ from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
 from .joint_turn import make_joint_velocity
-from .records import PLANE
+from .records import PLANE, SPHERE
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
@@ -65,8 +65,23 @@ def make_is_moving(spec: Spec) -> Any:
 
 
 def make_is_turning(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, bodies, motion, params) -> whether the geometry changes`."""
+    """Return `kernel(contacts, count, bodies, motion, params) -> whether the geometry changes`.
+
+    A ball's own spin changes none, where nothing else of it turns with its frame.
+    """
     turns, ropes = step_terms(spec).turns, row_terms(spec).taut
+    rolls = turns and not spec.connects and not step_terms(spec).uneven
+    rolls = rolls and not row_terms(spec).stretched and not row_terms(spec).elastic
+    rolls = rolls and not spec.has("surface_velocity") and not spec.has("varying_force")
+
+    def spins(body, m):
+        speed = sqrt(m.wx * m.wx + m.wy * m.wy + m.wz * m.wz)
+        if rolls:
+            if body.shape == SPHERE:
+                return 0.0
+        return speed
+
+    spins = kernel(spins, spec)
 
     def is_turning(contacts, count, bodies, motion, params):
         for c in range(count):
@@ -86,8 +101,7 @@ def make_is_turning(spec: Spec) -> Any:
                 if contact.span > 0.0:
                     rate = max(rate, speed / contact.span)
             if turns:
-                spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
-                spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
+                spin = spins(body_a, ma) + spins(body_b, mb)
                 rate += spin
                 speed += spin * size
             if rate * speed * params.dt > SAME:
