@@ -96,6 +96,30 @@ def test_bounds_hold_for_all_points_and_are_reached_by_some(rng) -> None:
         assert slow == pytest.approx(1e-7 + 1e-9 * limit, rel=1e-12)
 
 
+@pytest.mark.parametrize("scale", [1e-10, 1e-8, 2e-8, 1e-7, 1.0])
+def test_of_what_is_still_no_two_points_move_as_fast_as_counts(rng, scale) -> None:
+    """Speeds of points add up to 2 sqrt(2) of the speed up to which a body is still, a quarter."""
+    is_still = interpreted(approach.make_is_still(TURNS))
+    speed = interpreted(approach.make_relative_speed(TURNS))
+    for _ in range(40):
+        _, contact, bodies, motion = scene_of(rng)
+        for m in motion:
+            for prefix in ("v", "w"):
+                write(m, prefix, scale * vector(m, prefix))
+        still = is_still(bodies, motion)
+        assert not still or speed(contact, bodies, motion) <= approach.CREEP
+        assert still or scale > 1e-9
+        assert not still or scale < 1e-7
+
+
+def test_a_plane_that_turns_is_not_still() -> None:
+    is_still = interpreted(approach.make_is_still(TURNS))
+    plane = one_row(shape=PLANE, bound=0.0)
+    for spin in (0.0, 1e-12):
+        motion = one_row(**vector_fields("v", (0, 0, 0)), **vector_fields("w", (0, spin, 0)))
+        assert is_still([plane], np.array([motion])) == (spin == 0.0)
+
+
 def test_a_plane_has_no_size_but_an_arm(rng) -> None:
     _, contact, bodies, motion = scene_of(rng)
     write(motion[1], "w", (0.0, 0.0, 0.0))

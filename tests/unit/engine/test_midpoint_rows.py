@@ -26,7 +26,7 @@ from lavendersim.engine.midpoint_rows import (
     TURNED,
 )
 from lavendersim.engine.record_layout import allocate_bodies, allocate_velocities
-from lavendersim.engine.records import MOTION, PLANE, SPHERE, dtype
+from lavendersim.engine.records import BOX, MOTION, PLANE, SPHERE, dtype
 from lavendersim.engine.spec import Spec
 
 EFFECTS = ("contact_midpoint", "friction", "impact_order", "impact_time", "rotation")
@@ -278,7 +278,8 @@ def test_geometry_changes_by_what_turns_and_by_bodies_that_go_round_each_other(a
         v = np.sqrt(share * SAME * 0.2 / DT)
         assert turning(balls, (v, 2.0 * v), (0.0, 0.0)) == turns
         w = np.sqrt(share * SAME / DT / 0.2)
-        assert turning(balls, (1.0, 1.0), (-0.5 * w, 0.5 * w)) == turns
+        assert turning((BOX, BOX), (1.0, 1.0), (-0.5 * w, 0.5 * w)) == turns
+        assert not turning(balls, (1.0, 1.0), (-0.5 * w, 0.5 * w))
         # Past a plane: w (v + w r), r of the ball.
         w = 1e-4
         v = share * SAME / DT / w - w * 0.5

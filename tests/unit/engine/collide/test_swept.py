@@ -8,9 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from interpreted import interpreted
+from plain_facts import one_row, vector_fields
 from sweeps import DT, Pair
 
-from lavendersim.engine.records import TOUCHING
+from lavendersim.engine.collide.swept import make_is_apart
+from lavendersim.engine.records import PLANE, SPHERE, TOUCHING
+from lavendersim.engine.spec import Spec
 
 SPEED, RADIUS = 100.0, 0.05  # [m/s], [m]
 WALL = (0.01, 1.0, 1.0)  # half edges [m]: 20 mm thick
@@ -37,6 +41,19 @@ def test_a_sphere_at_100_m_per_s_meets_a_thin_wall_at_every_phase(phase):
     # A's surface is at p - n phi/2.
     surface = found.points[0] - 0.5 * found.phi[0] * found.normal
     np.testing.assert_allclose(surface, (-0.01, 0.2, -0.3), rtol=0, atol=ROUND_OFF)
+
+
+def test_only_balls_that_no_displacement_brings_together_are_apart() -> None:
+    """Of 0.2 and 0.3 m, each moving by half a margin: |x_B - x_A| > 0.2 + 0.3 + 2 x 0.1 m."""
+    is_apart = interpreted(make_is_apart(Spec(("fast_bodies",), ("sphere_plane", "sphere_sphere"))))
+
+    def ball(x, bound, shape=SPHERE):
+        return one_row(shape=shape, bound=bound, **vector_fields("", (x, 0.0, 0.0)))
+
+    for distance, apart in ((0.6999, False), (0.7001, True)):
+        assert is_apart(ball(0.0, 0.2), ball(distance, 0.3), 0.1) == apart
+        assert is_apart(ball(distance, 0.2), ball(0.0, 0.3), 0.1) == apart
+    assert not is_apart(ball(0.0, 0.0, PLANE), ball(9.0, 0.3), 0.1)
 
 
 @pytest.mark.parametrize("angle", np.radians([10.0, 45.0, 80.0]))
