@@ -189,7 +189,7 @@ def make_order(spec: Spec) -> Any:
     def order(state, count, workspace, params, counters):
         bodies, motion, contacts = state.bodies, state.motion, state.contacts
         left = params.dt
-        still = rests and is_still(bodies, motion)
+        still = rests and count > 0 and is_still(bodies, motion)
         if still:
             if not begin_order(state, count, True):
                 return count, left
