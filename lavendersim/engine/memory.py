@@ -229,7 +229,7 @@ def allocate_workspace(
             np.zeros(coupled, state.bodies.dtype),
             np.zeros(coupled, state.velocities.dtype),
         ),
-        ordering=allocate_ordering(bodies, 0),
+        ordering=allocate_ordering(spec, bodies, 0),
         contact_lists=allocate_contact_lists(0, 0),
         overlooked=Overlooked(np.zeros(0, _OVERLOOKED), np.zeros(1, np.int64)),
         islands=np.zeros(bodies if has_hook(spec, "update_sleeping") else 0, np.int64),
@@ -248,7 +248,7 @@ def for_contacts(spec: Spec, workspace: Workspace, state: State) -> Workspace:
     rows = 2 * capacity if step_terms(spec).overlooks else 0
     overlooked = np.zeros(rows, _OVERLOOKED)
     return workspace._replace(
-        ordering=allocate_ordering(bodies, capacity),
+        ordering=allocate_ordering(spec, bodies, capacity),
         contact_lists=allocate_contact_lists(*listed),
         overlooked=workspace.overlooked._replace(points=overlooked),
         solver=SOLVERS[spec.solver].allocate(spec, bodies, capacity),

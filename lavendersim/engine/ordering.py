@@ -12,17 +12,20 @@ each manifold in turn:
 
     colour 0: first rows of all its manifolds, then their second rows, ...; colour 1: ...
 
+A large scene that packs its sweeps has this order slab by slab (`slabs`).
+
 It is a fixed permutation of the same Gauss-Seidel sweep; the result depends on nothing but the
 contacts. Bodies with 63 manifolds and more share the last colour, which costs only time.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .compile import kernel
+from .slabs import FEWEST_CONTACTS, allocate_slabs, has_slabs, make_lay_bodies, make_sort_by_slabs
 from .spec import Spec
 
 COLOURS = 64
@@ -42,15 +45,17 @@ class Ordering(NamedTuple):
     colour_mask: np.ndarray  # (bodies,) int64, bit set of the colours of a body's manifolds
     bucket_ends: np.ndarray  # (BUCKETS + 1,) int64, rows before each bucket, then its end
     bucket_of: np.ndarray  # (contacts,) int64, colour and place in the manifold
+    slabs: Any  # of an engine that has them: `Slabs`, or ()
 
 
-def allocate_ordering(bodies: int, contacts: int) -> Ordering:
+def allocate_ordering(spec: Spec, bodies: int, contacts: int) -> Ordering:
     """Return arrays for so many bodies and contacts."""
     return Ordering(
         order=np.zeros(contacts, np.uint64),
         colour_mask=np.zeros(bodies, np.int64),
         bucket_ends=np.zeros(BUCKETS + 1, np.int64),
         bucket_of=np.zeros(contacts, np.int64),
+        slabs=allocate_slabs(bodies, contacts) if has_slabs(spec) else (),
     )
 
 
@@ -58,6 +63,9 @@ def make(spec: Spec):
     """Return `kernel(bodies, contacts, count, ordering)` that fills `ordering.order`."""
     if spec.order != "coloured":
         return _make_listed(spec)
+    in_slabs = has_slabs(spec)
+    lay_bodies: Any = make_lay_bodies(spec) if in_slabs else None
+    sort_by_slabs: Any = make_sort_by_slabs(spec) if in_slabs else None
 
     def order_contacts(bodies, contacts, count, ordering):
         order, colour_mask = ordering.order, ordering.colour_mask
@@ -68,6 +76,10 @@ def make(spec: Spec):
             return
         for i in range(bodies.shape[0]):
             colour_mask[i] = 0
+        if in_slabs:
+            slabs, many = ordering.slabs, count >= FEWEST_CONTACTS
+            if many:
+                lay_bodies(bodies, slabs)
         colour, row, last = 0, 0, 0
         for c in range(count):
             contact = contacts[c]
@@ -88,6 +100,10 @@ def make(spec: Spec):
             row = min(row + 1, MANIFOLD_ROWS - 1)
             bucket_of[c] = bucket
             last = max(last, bucket)
+            if in_slabs:
+                if many:
+                    a, b = contact.a, contact.b
+                    slabs.layer[c] = min(slabs.body_layer[a], slabs.body_layer[b])
         # A stack has two colours: buckets that hold nothing would cost more than its rows.
         for k in range(last + 2):
             bucket_ends[k] = 0
@@ -99,6 +115,9 @@ def make(spec: Spec):
             bucket = bucket_of[c]
             order[bucket_ends[bucket]] = c
             bucket_ends[bucket] += 1
+        if in_slabs:
+            if many:
+                sort_by_slabs(order, count, slabs)
 
     return kernel(order_contacts, spec)
 

@@ -7,7 +7,8 @@ spheres once it has settled, and spheres in a box, ten layers deep, while they s
 a thousand that land, of which every step is asked to be solved. Nothing sleeps. Steps are made one
 by one: a row has the mean time of a step, the largest residual of any, how many were
 solved to the tolerance, and what sweeps and Newton's method did. Time is the processor's own in
-this thread where the system counts it finely; compiling is apart.
+this thread where the system counts it finely; compiling is apart. Beside it stands what a visit of
+a packed contact moves, and how fast memory gives as much.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from lavendersim.quantities.found import nearest
 from lavendersim.runner.environment import environment
 from lavendersim.runner.timed_engine import clock
 
+from .memory_traffic import memory_bandwidth, traffic_of
 from .prepared_contacts import pile
 from .scenes import case
 
@@ -145,6 +147,7 @@ def measure(name: str, large: Large, steps: int) -> dict[str, Any]:
         "sweeps": float(sweeps.mean()),
         "newton_steps": float(newton.mean()),
         "ns_per_visit": float(spent.sum() / visits) if visits else None,
+        "bytes_per_visit": traffic_of(engine.spec).as_data(),
         "solved": int((residuals <= TOLERANCE).sum()),
         "worst_residual": float(residuals.max()),
     }
@@ -164,6 +167,12 @@ def table(found: dict[str, Any]) -> str:
             f"{row['sweeps']:7.1f} {row['newton_steps']:7.1f} "
             f"{'-' if visit is None else format(visit, '.1f'):>9} "
             f"{row['solved']:4}/{found['steps']:<4} {row['worst_residual']:8.1e}"
+        )
+    for rows, bodies in sorted({tuple(row["bytes_per_visit"].values()) for row in found["scenes"]}):
+        lines.append(
+            f"a visit of a packed contact reads {rows} bytes of its own and {bodies} of its "
+            f"bodies, which are written again; memory gives {found['memory_bandwidth']:.1f} GB/s: "
+            f"{rows / found['memory_bandwidth']:.1f} ns for its own"
         )
     machine = found["environment"]
     lines.append(f"{machine['processor']}, {machine['cores']} cores; {found['steps']} steps each")
@@ -185,6 +194,7 @@ def main() -> int:
         "steps": given.steps,
         "clock": clock()[0],
         "environment": environment(),
+        "memory_bandwidth": memory_bandwidth(),
         "scenes": [measure(n, SCENES[n], given.steps) for n in given.scenes or SCENES],
     }
     print(json.dumps(found) if given.json else table(found))

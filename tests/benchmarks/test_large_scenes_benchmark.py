@@ -6,6 +6,7 @@ import pytest
 
 from tests.benchmarks import large_scenes
 from tests.benchmarks.large_scenes import SCENES, Large, measure, solved, spheres
+from tests.benchmarks.memory_traffic import memory_bandwidth
 from tests.benchmarks.prepared_contacts import pile
 from tests.benchmarks.scenes import case
 
@@ -34,4 +35,13 @@ def test_a_row_counts_the_steps_that_were_solved() -> None:
     assert row["solved"] == 4
     assert row["worst_residual"] <= large_scenes.TOLERANCE
     found = {"scenes": [row], "steps": 4, "environment": {"processor": "one", "cores": 1}}
-    assert f"{'4/4':>9}".strip() in large_scenes.table(found)
+    found["memory_bandwidth"] = 20.0
+    table = large_scenes.table(found)
+    assert f"{'4/4':>9}".strip() in table
+    # a block of 27 numbers of axes and 19 more, two places; of each body a line
+    assert row["bytes_per_visit"] == {"rows": 8 * (27 + 19 + 2), "bodies": 2 * 64}
+    assert "19.2 ns for its own" in table
+
+
+def test_memory_gives_what_a_machine_may_have() -> None:
+    assert 0.1 < memory_bandwidth() < 2000.0  # [GB/s]

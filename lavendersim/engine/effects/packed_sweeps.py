@@ -8,7 +8,8 @@ and rolling friction, compliance, moving surfaces, frictionless pairs beside fri
 
 Packing costs what two sweeps over the records save: solves of one or two sweeps, or of few
 contacts, do without (`solvers.packed.late`). Below some two hundred bodies Newton's method finishes
-most long solves, and sweeps are a small share of a step.
+most long solves, and sweeps are a small share of a step. From some four thousand contacts on they
+are visited slab by slab, and sweeps follow each other through the scene (`slabs`).
 """
 
 from .decision import Decision, Facts

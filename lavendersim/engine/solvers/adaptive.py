@@ -35,7 +35,7 @@ from .newton.envelope import allocate_envelope
 from .newton.factor import allocate_factor
 from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, make_step_cost
 from .newton.rounds import SOFTEST
-from .packed.late import FIRST, Packing, make_sweep_late, packs_late
+from .packed.late import FAR, FIRST, Packing, make_sweep_late, packs_late
 from .packed.layout import PackedContacts, allocate_packed
 from .solver import Solver, no_workspace
 from .sweep import make_sweep
@@ -98,6 +98,7 @@ class Adaption(NamedTuple):
 def make(spec: Spec) -> Iteration:
     """Return the sweeps, and Newton's method between them."""
     packs, chooses = packs_late(spec), has_hook(spec, "choose_impulses")
+    looks = spec.has("newton")
     put_back: Any = None
     sweep: Any = None
     if packs:
@@ -111,18 +112,26 @@ def make(spec: Spec) -> Iteration:
         if counters.sharpen == 1:
             aim *= SHARPNESS
         counters.sharpen = 0
-        return Adaption(aim, Packing(FIRST, 0), 0, 0.0, 0.0, LOOK, LOOK, True, -1, 0.0)
+        return Adaption(aim, Packing(FIRST, 0, 0), 0, 0.0, 0.0, LOOK, LOOK, True, -1, 0.0)
 
     def sweep_and_count(system, workspace, params, counters, carry):
-        packing = carry.packing
+        packing, sweeps = carry.packing, carry.sweeps
         if packs:
-            greatest, packing = sweep(system, workspace.packed, params, packing)
+            most = params.sweeps - sweeps
+            if looks:
+                if most > LAST:
+                    most -= LAST
+                most = min(most, carry.look - sweeps)
+            greatest, change, packing = sweep(
+                system, workspace.packed, params, packing, most, carry.greatest > FAR * carry.aim
+            )
         else:
             greatest = sweep(system, params)
+            change = greatest
         if chooses:
-            counters.unchosen += greatest
+            counters.unchosen += change
         return greatest, Adaption(
-            carry.aim, packing, carry.sweeps + 1, greatest, carry.earlier, carry.look,
+            carry.aim, packing, sweeps + 1, change, carry.earlier, carry.look,
             carry.pause, carry.sticking_guess, carry.unknowns, carry.cost,
         )  # fmt: skip
 
@@ -153,7 +162,10 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
         ends, over = False, False
         if slides:
             over = sweeps == params.sweeps
-        if (sweeps == params.sweeps - LAST or over) and sweeps > LOOK:
+        affordable = True  # by what is known of a step's cost, however much it is worth
+        if unknowns >= 0:
+            affordable = VISIT * system.count * MOST_SWEEPS >= FEWEST_STEPS * cost
+        if (sweeps == params.sweeps - LAST or over) and sweeps > LOOK and affordable:
             if packs:
                 put_back(system, workspace.packed, packing)
             largest, _ = residual(system.contacts, system.count, system.velocities)
@@ -175,7 +187,7 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
             if most >= FEWEST_STEPS:
                 if packs:
                     put_back(system, workspace.packed, packing)
-                    packing = Packing(FIRST, 0)  # few sweeps follow
+                    packing = Packing(FIRST, 0, 0)  # few sweeps follow
                 steps = 0
                 if not (over and ends):
                     steps, sticking_guess = newton(

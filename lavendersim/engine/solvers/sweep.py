@@ -6,6 +6,8 @@ from typing import Any
 
 from .. import ordering
 from ..compile import kernel
+from ..prefetch import AHEAD, prefetch
+from ..slabs import has_slabs
 from ..spec import Spec
 from .row_update import make_solve_contact_velocity
 
@@ -17,12 +19,15 @@ def make_sweep(spec: Spec):
     """
     solve_contact_velocity = make_solve_contact_velocity(spec)
     symmetric = spec.order == "symmetric"
+    asks = has_slabs(spec)  # its scenes may be larger than the caches
     turn_round: Any = ordering.make_turn_round(spec) if symmetric else None
 
     def sweep(system, params):
         contacts, order, velocities = system.contacts, system.order, system.velocities
         greatest = 0.0
         for c in range(system.count):
+            if asks:
+                prefetch(contacts, order[min(c + AHEAD, system.count - 1)])
             contact = contacts[order[c]]
             change = solve_contact_velocity(contact, contacts, velocities, params)
             # A NaN is greater than anything.

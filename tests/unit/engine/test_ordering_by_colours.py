@@ -20,7 +20,7 @@ def ordered(manifolds: list[tuple[int, int, int]], bodies: int) -> tuple[np.ndar
     contacts, found = np.zeros(len(rows), contact_dtype(SPEC)), allocate_bodies(SPEC, bodies)
     contacts["a"], contacts["b"], contacts["key"] = np.array(rows).T
     found["inv_m"][1:] = 1.0
-    work = ordering.allocate_ordering(bodies, len(rows))
+    work = ordering.allocate_ordering(SPEC, bodies, len(rows))
     order_contacts = interpreted(ordering.make(SPEC))
     order_contacts(records(found), records(contacts), len(rows), work)
     return work.order[: len(rows)], work.bucket_of[: len(rows)]

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...compile import kernel
+from ...prefetch import AHEAD, prefetch_impulses
 from ...spec import Spec
 from ..solver import ContactSystem
 from .lane_memory import (
@@ -95,6 +96,7 @@ def make_push_apart(spec: Spec) -> Any:
             if not changed:  # nor would anything in the sweeps that are left
                 break
         for k in range(system.count):
+            prefetch_impulses(contacts, order[min(k + AHEAD, system.count - 1)])
             push = take_one(packed.rows, place(packed.slot[k]) + PUSH * WIDTH)
             contacts[order[k]].push = push
         unpack_bodies(bodies, pseudo, packed)

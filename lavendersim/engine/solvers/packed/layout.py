@@ -56,6 +56,8 @@ NORMAL, ARM_A, ARM_B = range(0, 3 * AXIS, AXIS)
     PER_MASS_A, PER_MASS_B, W_NORMAL, INV_K_NORMAL, K_NORMAL, SOFT, PRESSED,
 ) = range(3 * AXIS, 3 * AXIS + 7)  # fmt: skip
 NORMAL_ALONE = PRESSED + 1
+# Groups of a run, and sweeps that follow each other run by run (`sweep`).
+RUN, TOGETHER = 64, 4
 LINE = 8  # numbers of a line of the processor's cache
 
 # Velocity of a body when the solve begins [m/s], [rad/s], and the lower triangle of L.
@@ -91,6 +93,9 @@ class PackedContacts(NamedTuple):
     start: np.ndarray  # (bodies,) START: v_0, omega_0
     factor: np.ndarray  # (bodies,) FACTOR: L
     group_of: np.ndarray  # (bodies,) int64, last group with a contact of the body
+    run_of: np.ndarray  # (bodies,) int64, first run of groups with a contact of it
+    reach: np.ndarray  # (1,) int64, most runs from the first to the last with one movable body
+    changes: np.ndarray  # (TOGETHER,) of sweeps made together, the last one first [m/s]
 
 
 def stride(spec: Spec, eight: bool) -> int:
@@ -111,6 +116,9 @@ def allocate_packed(spec: Spec, bodies: int, contacts: int, eight: bool) -> Pack
         np.zeros(bodies, dtype(START)),
         np.zeros(bodies, dtype(FACTOR)),
         np.zeros(bodies, np.int64),
+        np.zeros(bodies, np.int64),
+        np.zeros(1, np.int64),
+        np.zeros(TOGETHER),
     )
 
 

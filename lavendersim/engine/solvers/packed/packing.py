@@ -6,16 +6,14 @@ from math import sqrt
 from typing import Any
 
 from ...compile import inner, kernel
+from ...prefetch import AHEAD, prefetch, prefetch_impulses
 from ...rotation import inverse_inertia_times
 from ...row_terms import row_terms
 from ...spec import Spec
 from ...vectors import Vec3, cross, dot, plus_scaled
 from .lane_memory import STRIDE, put_one, take_one
 from .lanes import WIDTH
-from .layout import (
-    AXIS,
-    make_place,
-)
+from .layout import AXIS, RUN, make_place
 
 
 @inner
@@ -165,13 +163,23 @@ def make_pack_rows(spec: Spec, eight: bool, pack_contact: Any, fields: int) -> A
 
     fill_up: Any = kernel(fill, spec) if eight else None
 
+    def note_run(packed, body, run):
+        # Before the body's last group is set; what has no mass is in all of them.
+        if packed.group_of[body] < 0:
+            packed.run_of[body] = run
+        packed.reach[0] = max(packed.reach[0], run - packed.run_of[body])
+
+    note_run = kernel(note_run, spec)
+
     def pack(system, packed):
         contacts, order, bodies = system.contacts, system.order, system.bodies
         velocities = system.velocities
         pack_bodies(bodies, velocities, packed)
         spare = bodies.shape[0] * STRIDE
         slot = 0
+        packed.reach[0] = 0
         for k in range(system.count):
+            prefetch(contacts, order[min(k + AHEAD, system.count - 1)])
             contact = contacts[order[k]]
             a, b = contact.a, contact.b
             if eight:
@@ -182,6 +190,10 @@ def make_pack_rows(spec: Spec, eight: bool, pack_contact: Any, fields: int) -> A
                     group += 1
                     fill_up(packed, slot, group * WIDTH, spare)
                     slot = group * WIDTH
+                if contact.inv_m_a > 0.0:
+                    note_run(packed, a, group // RUN)
+                if contact.inv_m_b > 0.0:
+                    note_run(packed, b, group // RUN)
                 packed.group_of[a], packed.group_of[b] = group, group
             packed.slot[k] = slot
             packed.first[slot], packed.second[slot] = a * STRIDE, b * STRIDE
@@ -207,6 +219,7 @@ def make_unpack_rows(spec: Spec, eight: bool, unpack_contact: Any, fields: int) 
     def unpack(system, packed):
         contacts, order = system.contacts, system.order
         for k in range(system.count):
+            prefetch_impulses(contacts, order[min(k + AHEAD, system.count - 1)])
             unpack_contact(contacts[order[k]], packed.rows, place(packed.slot[k]))
         unpack_bodies(system.bodies, system.velocities, packed)
 

@@ -22,10 +22,7 @@ from .lanes import (
     lane,
     zeros,
 )
-from .layout import (
-    begins,
-    stride,
-)
+from .layout import RUN, begins, stride
 from .normals import make_pack_normal, make_unpack_normal, make_visit_normal
 from .packing import make_pack_rows, make_unpack_rows
 from .spins import make_pack_spins, make_unpack_spins
@@ -92,6 +89,42 @@ def make_sweep_packed(spec: Spec, eight: bool) -> Any:
         return greatest
 
     return kernel(sweep_by_eight if eight else sweep_singly, spec)
+
+
+def make_sweep_together(spec: Spec) -> Any:
+    """Return `kernel(packed, slots, sweeps)`: sweeps by eight, each run by run behind the last.
+
+    No run shares a movable body with one that is more than `packed.reach` away, so the next sweep
+    may visit a run as soon as the last one has visited those: to the same bits as one sweep after
+    the other, and what is read is still near. Greatest changes go to `packed.changes`, the last
+    sweep's first.
+    """
+    visit, numbers = _make_visit(spec, True), stride(spec, True)
+
+    def sweep_run(packed, first, last):
+        most = zeros()
+        for g in range(first, last):
+            most = visit(packed, g * numbers, g * WIDTH, most)
+        greatest = lane(most, 0)
+        for k in range(1, WIDTH):
+            greatest = greater(lane(most, k), greatest)
+        return greatest
+
+    sweep_run = kernel(sweep_run, spec)
+
+    def sweep_together(packed, slots, sweeps):
+        groups, behind, changes = slots // WIDTH, packed.reach[0], packed.changes
+        runs = (groups + RUN - 1) // RUN
+        for k in range(sweeps):
+            changes[k] = 0.0
+        for leading in range(runs + (sweeps - 1) * behind):
+            for k in range(sweeps):
+                run = leading - k * behind
+                if 0 <= run < runs:
+                    change = sweep_run(packed, run * RUN, min((run + 1) * RUN, groups))
+                    changes[sweeps - 1 - k] = greater(change, changes[sweeps - 1 - k])
+
+    return kernel(sweep_together, spec)
 
 
 class PackedCarry(NamedTuple):

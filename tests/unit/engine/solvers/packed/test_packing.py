@@ -34,6 +34,8 @@ EIGHTS = pytest.mark.parametrize("eight", [False, True], ids=["singly", "eights"
 def plain_places(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(packing, "put_one", lambda rows, at, value: rows.__setitem__(at, value))
     monkeypatch.setattr(packing, "take_one", lambda rows, at: rows[at])
+    for ask in ("prefetch", "prefetch_impulses"):
+        monkeypatch.setattr(packing, ask, lambda records, at: None)
 
 
 def system_of(scene: Drawn, order: np.ndarray) -> ContactSystem:
@@ -119,6 +121,22 @@ def test_a_block_turns_by_all_its_axes(rng) -> None:
     put = interpreted(packing.make_put(FRICTIONAL, True))
     put(rows, 3, 5, 0.25)
     assert rows[3 + 5 * WIDTH] == 0.25
+
+
+@pytest.mark.parametrize("run", [1, 2, 64])
+def test_no_movable_body_reaches_further_than_is_said(
+    run: int, rng, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(packing, "RUN", run)
+    scene = drawn(FRICTIONAL, rng, PAIRS)
+    for order in (np.arange(len(PAIRS)), rng.permutation(len(PAIRS))):
+        _, memory, _ = packed(scene, FRICTIONAL, True, order)
+        runs: dict[int, list[int]] = {}
+        for k, c in enumerate(order):
+            for i in PAIRS[c]:
+                if i != 0:  # the floor
+                    runs.setdefault(i, []).append(int(memory.slot[k]) // WIDTH // run)
+        assert memory.reach[0] == max(max(own) - min(own) for own in runs.values())
 
 
 def test_a_group_has_no_movable_body_twice_and_is_filled_with_nothing(rng) -> None:
