@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .collide.nearest_image import place_beside
 from .collide.shapes import has_drum
 from .compile import inner, kernel
 from .effects import made_once
@@ -138,12 +139,12 @@ def make_rate(spec: Spec) -> Any:
 
 def make_approach(spec: Spec) -> Any:
     """Return `kernel(contact, bodies, motion) -> v`: rate of its gap as the part begins [m/s]."""
-    rate, swept = make_rate(spec), row_terms(spec).swept
+    rate, swept, beside = make_rate(spec), row_terms(spec).swept, place_beside(spec)
 
     def approach(contact, bodies, motion):
         at = position(contact)
         arm_a = minus(at, position(bodies[contact.a]))
-        arm_b = minus(at, position(bodies[contact.b]))
+        arm_b = minus(at, beside(bodies[contact.a], bodies[contact.b]))
         if swept:  # it is where B will be across n
             aside = Vec3(contact.tangential_x, contact.tangential_y, contact.tangential_z)
             arm_b = minus(arm_b, aside)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from math import sqrt
 
+from .collide.nearest_image import place_beside
 from .compile import inner, kernel
 from .effects import made_once
 from .row_terms import row_terms
@@ -215,7 +216,7 @@ def make_complete_block(spec: Spec):
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
     swept, shifted = row_terms(spec).swept, row_terms(spec).shifted
     stretched, stretch_tangents = made_once(spec, "stretch_tangents")
-    response = make_block_response(spec)
+    response, beside = make_block_response(spec), place_beside(spec)
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi
@@ -223,9 +224,10 @@ def make_complete_block(spec: Spec):
         contact.rax = contact.x - x - body_a.x
         contact.ray = contact.y - y - body_a.y
         contact.raz = contact.z - z - body_a.z
-        contact.rbx = contact.x + x - body_b.x
-        contact.rby = contact.y + y - body_b.y
-        contact.rbz = contact.z + z - body_b.z
+        b = beside(body_a, body_b)
+        contact.rbx = contact.x + x - b.x
+        contact.rby = contact.y + y - b.y
+        contact.rbz = contact.z + z - b.z
         if swept:
             contact.rbx -= contact.tangential_x
             contact.rby -= contact.tangential_y

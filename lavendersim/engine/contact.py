@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from .block import make_apply_vector, make_complete_block, make_relative_velocity
+from .collide.nearest_image import place_beside
 from .collide.records import UNBOUNDED
 from .compile import chain, inner, kernel
 from .effects import has_hook, made_by, made_once
@@ -27,7 +28,7 @@ from .spin_block import (
     resists_turning,
 )
 from .step_terms import step_terms
-from .vectors import Vec3, cross, length, position
+from .vectors import Vec3, cross, length
 
 
 @inner
@@ -219,11 +220,12 @@ def make_complete_row(spec: Spec):
     torque, swept = row_terms(spec).levers, row_terms(spec).swept
     ropes, bilateral = row_terms(spec).taut, row_terms(spec).bilateral
     bounded, stopped = row_terms(spec).bounded, row_terms(spec).stopped
+    beside = place_beside(spec)
 
     def complete_row(contact, body_a, body_b):
         k_n = body_a.inv_m + body_b.inv_m
         if torque:
-            b = position(body_b)
+            b = beside(body_a, body_b)
             if swept:
                 b = Vec3(
                     b.x + contact.tangential_x,

@@ -16,6 +16,7 @@ from lavendersim.garbage import uncollected
 from . import memory
 from .collide import narrow_phase
 from .collide.broad.broad_phase import allocate_broad_phase
+from .collide.broad.images import most_images
 from .compile import compiling, kernel
 from .effects import made_once
 from .engine import Engine
@@ -90,5 +91,5 @@ def _make_room_for_pairs(engine: Engine) -> None:
     needed = int(engine.workspace.broad_phase.state["needed"][0])
     pairs = np.zeros(needed + needed // 4, engine.state.pairs.dtype)
     engine.state = engine.state._replace(pairs=pairs)
-    near = allocate_broad_phase(len(engine.bodies), len(pairs))
+    near = allocate_broad_phase(len(engine.bodies), len(pairs), most_images(engine.bodies))
     engine.workspace = engine.workspace._replace(broad_phase=near)

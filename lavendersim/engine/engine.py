@@ -21,6 +21,7 @@ from lavendersim.record_tables import copied
 from . import memory, removal
 from .assemble import StepProblem, step_problem
 from .collide.broad.broad_phase import allocate_broad_phase
+from .collide.broad.images import most_images
 from .collide.convex.hull_geometry import HullGeometry
 from .collide.mesh_tables import MeshTables
 from .compile import compiling
@@ -208,7 +209,7 @@ class Engine:
         needed = int(self.workspace.broad_phase.state["needed"][0])
         pairs = removal.larger_table(self.state.pairs, needed + needed // 4)
         self.state = self.state._replace(pairs=pairs)
-        near = allocate_broad_phase(len(self.bodies), len(pairs))
+        near = allocate_broad_phase(len(self.bodies), len(pairs), most_images(self.bodies))
         self.workspace = self.workspace._replace(broad_phase=near)
 
     def _sweep_rows(self) -> int:

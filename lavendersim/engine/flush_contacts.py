@@ -17,6 +17,7 @@ from __future__ import annotations
 from typing import Any
 
 from .approach import CREEP, FAR, make_rate, make_slowest
+from .collide.nearest_image import place_beside
 from .collide.pairs import SHAPE_PAIRS
 from .collide.shape_kernels import make_radius, make_support
 from .collide.shapes import has_cavity, has_mesh
@@ -46,7 +47,7 @@ def make_drop_flush(spec: Spec) -> Any:
     keep_present, list_contacts = make_keep_present(spec), make_list_contacts(spec)
     sleeps, connects = has_hook(spec, "update_sleeping"), spec.connects
     joins, cavities = row_terms(spec).bilateral, has_cavity(spec)
-    meshes = has_mesh(spec)
+    meshes, beside = has_mesh(spec), place_beside(spec)
 
     def passes(state, contact, other, workspace, params, least):
         bodies, motion = state.bodies, state.motion
@@ -67,11 +68,11 @@ def make_drop_flush(spec: Spec) -> Any:
         a, b = bodies[row.a], bodies[row.b]
         hulls = workspace.collision.hulls
         p = plus(position(a), support(a, m, hulls))
-        q = plus(position(b), support(b, Vec3(-x, -y, -z), hulls))
+        q = plus(beside(a, b), support(b, Vec3(-x, -y, -z), hulls))
         if dot(m, minus(q, p)) - radius(a) - radius(b) < -(FLUSH * params.slop + TOUCHING):
             return False
         arm_a = minus(p, position(bodies[contact.a]))
-        arm_b = minus(q, position(bodies[contact.b]))
+        arm_b = minus(q, beside(bodies[contact.a], bodies[contact.b]))
         v = rate(m, motion[contact.a], motion[contact.b], arm_a, arm_b)
         return v >= -least
 

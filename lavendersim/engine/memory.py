@@ -17,6 +17,7 @@ import numpy as np
 
 from .anderson import FixedPoint, allocate_fixed_point
 from .collide.broad.broad_phase import allocate_broad_phase
+from .collide.broad.images import most_images
 from .collide.convex.hull_geometry import HullGeometry
 from .collide.manifold.own_normals import has_own_normals
 from .collide.mesh_tables import MeshTables
@@ -236,7 +237,11 @@ def allocate_workspace(
         solver=(),
         free_velocities=np.zeros(free, state.velocities.dtype),
         templates=templates if near else (),
-        broad_phase=allocate_broad_phase(bodies, len(state.pairs)) if near else (),
+        broad_phase=(
+            allocate_broad_phase(bodies, len(state.pairs), most_images(state.bodies))
+            if near
+            else ()
+        ),
     )
     return for_contacts(spec, empty, state)
 

@@ -25,6 +25,7 @@ from math import cos, sin, sqrt
 from typing import Any
 
 from .approach import CREEP, NEVER, OVERLAP, make_forced, make_rate, normal
+from .collide.nearest_image import place_beside
 from .compile import inner, kernel
 from .foreseen_impacts import FLIGHT, make_is_impact
 from .integrate import ALWAYS
@@ -113,6 +114,7 @@ def make_look_over(spec: Spec) -> Any:
     forced, is_impact = make_forced(spec), make_is_impact(spec)
     restitution = may_rebound(spec)
     restitution_of: Any = make_restitution_of(spec) if restitution else None
+    beside = place_beside(spec)
 
     def turned(n, w, arm, dt):
         # What turning the arm moves its end along n, beside what its rate at the start does [m].
@@ -157,7 +159,7 @@ def make_look_over(spec: Spec) -> Any:
             if poses[a].shape == SPHERE or poses[b].shape == SPHERE:  # no push turns it in
                 continue
             arm_a = minus(position(point), position(poses[a]))
-            arm_b = minus(position(point), position(poses[b]))
+            arm_b = minus(position(point), beside(poses[a], poses[b]))
             va, vb, ma, mb = velocities[a], velocities[b], motion[a], motion[b]
             first, last = rate(n, ma, mb, arm_a, arm_b), rate(n, va, vb, arm_a, arm_b)
             across = rate(n, va, mb, arm_a, arm_b)

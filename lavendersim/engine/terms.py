@@ -54,4 +54,5 @@ class StepTerms:
     ordered_impacts: bool = False  # and follow each other there: steps are made in parts
     bounces_vary: bool = False  # those of a contact alone are no powers of e
     overlooks: bool = False  # points without a row are looked over once it is solved: PAIR.whole
+    periodic: bool = False  # bodies have images: `period_x`, y, z [m], 0: none along that axis
     substeps: bool = False  # steps are made in substeps, by an error that is asked for

@@ -19,6 +19,7 @@ from lavendersim.experiment.cell import Cell, build_cell
 from lavendersim.experiment.checks.reading import Reading
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.inheritance.parents import with_parents
+from lavendersim.experiment.mesh_files import with_mesh_files
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.models.tree import swept_values
 from lavendersim.experiment.own_measures import with_own_measures
@@ -157,6 +158,9 @@ def _with_files(root: Node, text: str, file: Path, report: Report) -> tuple[Node
     if (whole := with_parents(root, file, report.name, report)) is not None:
         root, text, files = whole.tree, whole.text, {**whole.files, **files}
         head = text[: text.find("\n") + 1]
+    if (meshes := with_mesh_files(root, files, report)) is not None:
+        root, text = meshes[0], head + meshes[1]
+        head += meshes[1][: meshes[1].find("\n") + 1]
     if (own := with_own_measures(root, files, report)) is not None:
         root, text = own[0], head + own[1]
     return root, text

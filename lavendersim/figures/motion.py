@@ -14,6 +14,7 @@ import numpy as np
 from lavendersim.cell import Plane
 from lavendersim.figures.style import LOOKS
 from lavendersim.figures.thumbnail import colour_of, grounds_of, parts_of, view_of
+from lavendersim.geometry.periodic_cell import in_cell
 from lavendersim.measures.changes import removals
 
 FRAMES: Final = 120  # states at most
@@ -30,6 +31,7 @@ def motion(trace: Any) -> str:
     time, null where it is not there.
     """
     rows, poses = trace.recorded_pose
+    poses = in_cell(poses, trace.config.scene.periodic)
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
     solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane)][:MOST_BODIES]
     whole = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))

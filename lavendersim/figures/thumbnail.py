@@ -15,6 +15,7 @@ import numpy as np
 
 from lavendersim.cell import Bowl, Cavity, CellMesh, CellShape, Convex, Ellipsoid, Plane
 from lavendersim.figures.style import DARK, GREY, LOOKS
+from lavendersim.geometry.periodic_cell import in_cell
 from lavendersim.geometry.rotations import rotation_matrices, rotation_matrix
 from lavendersim.geometry.shapes import half_space, pieces
 from lavendersim.measures.changes import removals
@@ -89,6 +90,7 @@ def _outlines(
     What was removed is seen where it began, and not at the end.
     """
     rows, poses = trace.recorded_pose
+    poses = in_cell(poses, trace.config.scene.periodic)
     whole = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))
     bodies = [trace.config.scene.bodies[name] for name in trace.bodies]
     solid = [i for i, body in enumerate(bodies) if not isinstance(body.shape, Plane)][:MOST_BODIES]

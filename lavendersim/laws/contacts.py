@@ -12,6 +12,7 @@ from lavendersim.engine.records import PLANE
 from lavendersim.engine.tangents import first_tangent, second_tangent
 from lavendersim.errors import UsageError
 from lavendersim.geometry.bodies import principal_inertia
+from lavendersim.geometry.periodic_cell import nearest_images
 from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.geometry.shapes import bounding_radius, thickness
 from lavendersim.scene.body_rows import orient
@@ -24,6 +25,7 @@ from .motion import Floats, RecordedMotion
 # What of a plan says who may touch whom, where its points are and what the pair obeys.
 _GEOMETRY = {
     *("broad_phase", "compound", "compliance", "contact_torque", "external_force", "friction"),
+    "periodic_boundary",
     *(
         "hertz_contact",
         "kinematic",
@@ -82,6 +84,7 @@ class ContactSearch:
         spec = plan.spec._replace(
             effects=tuple(sorted(effects)), solver="projected_gauss_seidel", order="forward"
         )
+        self._periodic = config.scene.periodic if "periodic_boundary" in effects else None
         self.slop = config.numerics.slop  # gap and penetration that the config calls none [m]
         scene = build(config, spec)
         self.engine = scene.engine(spec)
@@ -157,6 +160,7 @@ class ContactSearch:
         )
         a, b = found["a"].astype(np.intp), found["b"].astype(np.intp)
         half = 0.5 * found["phi"][:, None] * normal
+        places = _vectors(bodies[b], ""), _vectors(bodies[a], "")
         of_pair = pairs[found["pair"]]
         mu = np.maximum(_number(of_pair, "friction"), _number(of_pair, "static_friction"))
         return Contacts(
@@ -165,7 +169,7 @@ class ContactSearch:
             found["feature"].copy(),
             np.stack([normal, *tangents], axis=1),
             point - half - _vectors(bodies[a], ""),
-            point + half - _vectors(bodies[b], ""),
+            point + half - nearest_images(*places, self._periodic),
             found["phi"].copy(),
             np.where(_number(of_pair, "friction") > 0.0, mu, 0.0),
             _number(of_pair, "restitution"),

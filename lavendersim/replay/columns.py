@@ -15,6 +15,7 @@ import rerun as rr
 
 from lavendersim.cell import Plane
 from lavendersim.geometry.bodies import is_movable
+from lavendersim.geometry.periodic_cell import wrapped
 from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.replay.blocks import blocks, send_columns
 from lavendersim.replay.connections import send_connections
@@ -159,7 +160,7 @@ def send_scene(
 def _send_poses(
     stream: rr.RecordingStream, trace: Trace, times: npt.NDArray[Any], layer: Layer, since: int
 ) -> None:
-    given = trace.config.scene.bodies
+    given, cell = trace.config.scene.bodies, trace.config.scene.periodic
     recorded, pose = trace.recorded_pose
     for body, name in enumerate(trace.bodies):
         if isinstance(given[name].shape, Plane):
@@ -172,7 +173,7 @@ def _send_poses(
         for block in blocks(len(rows)):
             here = rows[block]
             columns = rr.Transform3D.columns(
-                translation=pose[here, body, :3],
+                translation=wrapped(pose[here, body, :3], cell),
                 quaternion=pose[here, body][:, [4, 5, 6, 3]],  # ours is w x y z, rerun's x y z w
                 child_frame=[layer.frame(name)] * len(here),
                 parent_frame=[WORLD] * len(here),
@@ -204,7 +205,7 @@ def _send_contacts(
     for block in blocks(len(times)):
         lengths = (end - first)[block]
         rows = contact[first[block][0] : end[block][-1]]
-        origins = _vectors(rows, "x", "y", "z")
+        origins = wrapped(_vectors(rows, "x", "y", "z"), trace.config.scene.periodic)
         vectors, cut = scale.arrows(_vectors(rows, "nx", "ny", "nz"), rows["force_n"])
         colours = np.where(cut, CUT_FORCE_COLOUR, FORCE_COLOUR).astype(np.uint32)
         forces = rr.Arrows3D.columns(origins=origins, vectors=vectors, colors=colours)

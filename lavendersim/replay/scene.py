@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import rerun as rr
 
+from lavendersim.geometry.periodic_cell import wrapped
 from lavendersim.geometry.rotations import rotated, shortest_turn
 from lavendersim.replay.camera import Camera
 from lavendersim.replay.layer import ALONE, Layer
@@ -79,11 +80,12 @@ def entity(name: str, layer: Layer = ALONE) -> str:
 def extent(trace: Trace, bodies: Iterable[DrawnBody]) -> Extent:
     """The room that the bodies take over the whole trace, planes left out."""
     row_of = {name: row for row, name in enumerate(trace.bodies)}
+    cell = trace.config.scene.periodic
     lows, highs = [], []
     for body in bodies:
         if body.kind == "plane":
             continue
-        positions = trace.recorded_pose.pose[:, row_of[body.name], :3]
+        positions = wrapped(trace.recorded_pose.pose[:, row_of[body.name], :3], cell)
         positions = positions[np.isfinite(positions).all(axis=1)]
         if len(positions):
             lows.append(positions.min(axis=0) - body.bounding_radius)
@@ -145,6 +147,8 @@ def _draw_path(
     """A thin line through the body's recorded positions: a still picture then tells its story."""
     path = trace.recorded_pose.pose[:, trace.bodies.index(body.name), :3]
     path = path[np.isfinite(path).all(axis=1)]
+    if trace.config.scene.periodic is not None:
+        return  # a line through places in the cell would cross it wherever the body leaves it
     if len(path) and np.ptp(path, axis=0).max() > 0:
         path = path[:: 1 + len(path) // PATH_POINTS]
         line = rr.LineStrips3D([path], colors=[(*colour, 120)], radii=rr.Radius.ui_points(1.0))

@@ -16,6 +16,7 @@ from lavendersim.cell import (
     CellHull,
     CellMesh,
     CellPart,
+    CellScene,
     CellShape,
     Convex,
     Plane,
@@ -29,6 +30,7 @@ from lavendersim.engine.collide.mesh_tables import MeshTables
 from lavendersim.engine.collide.shapes import SHAPES, has_mesh
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.record_layout import allocate_bodies
+from lavendersim.engine.records import PLANE
 from lavendersim.engine.spec import Spec
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.quaternions import product
@@ -120,6 +122,14 @@ def fill_effects(record: np.void, body: CellBody) -> None:
     for body_values in OWN_VALUES:
         values = body_values(body)
         _fill(record, values, values.values())
+
+
+def fill_periods(bodies: np.ndarray, scene: CellScene) -> None:
+    """Fill the periods of the cell, of all bodies but planes, where bodies may meet images."""
+    if scene.periodic is None or "period_x" not in (bodies.dtype.names or ()):
+        return
+    for axis, period in scene.periodic.periods.items():
+        bodies[f"period_{axis}"] = np.where(bodies["shape"] == PLANE, 0.0, period)
 
 
 def _fill(record: np.void, names: Iterable[str], values: Iterable[Any]) -> None:

@@ -25,7 +25,7 @@ from lavendersim.engine.spec import Spec
 from lavendersim.quantities.quantity import Vector3
 from lavendersim.quantities.scalars import exact
 
-from .body_rows import body_table, pose_of
+from .body_rows import body_table, fill_periods, pose_of
 from .classes import RowClass
 from .colliders import colliders
 from .drive_tables import drive_tables
@@ -156,6 +156,7 @@ def build(config: CellConfig, spec: Spec) -> Scene:
     rows = colliders(described)
     poses = np.array([pose_of(body) for body in described]).reshape(-1, 7)
     bodies, hulls, meshes = body_table(spec, rows, poses)
+    fill_periods(bodies, config.scene)
     bodies = with_ends(spec, bodies, config)
     first_joint = len(bodies)
     bodies = with_joint_ends(spec, bodies, config)

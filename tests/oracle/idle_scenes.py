@@ -174,6 +174,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "joint_stop": ("balls",),
     "motor": ("balls",),
     "broad_phase": ("balls",),
+    "periodic_boundary": ("balls", "boxes, default"),
     "gravity": ("drifting balls",),
     "external_force": ("frictional balls",),
     "varying_force": ("frictional balls",),

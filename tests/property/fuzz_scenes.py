@@ -108,6 +108,7 @@ def _closed(names: set[str], numerics: dict[str, Any]) -> tuple[str, ...]:
 NOT_DRAWN = {
     "hertz_contact": "no compliance may be beside it; see tests/physics/test_hertz_contacts.py",
     "capture_in_sweeps": "a mistake that is made on purpose, which breaks laws",
+    "periodic_boundary": "scenes here have walls, or none; see test_periodic_boundary.py",
     "supernodes": "of hundreds of bodies; here envelopes are small; see `test_panels.py`",
 }
 # Those whose kernels run since the engine has them, though no scene is large enough, or asks.

@@ -10,7 +10,6 @@ DECLARATIONS = {
     "cell/numerics.py": "fields of a resolved config",
     "cell/shapes/compound.py": "fields of a resolved config",
     "cell/shapes/plane.py": "fields of a resolved config",
-    "experiment/models/meshes.py": "fields of a config",
     "engine/terms.py": "terms that effects declare",
     "engine/solvers/catalogue.py": "a list of declarations",
     "figures/specs/base.py": "fields of a panel's config",

@@ -25,7 +25,7 @@ SYMBOLS = ("v", "gamma")  # a sentence that begins with one keeps its case
 # Where an effect's equations stand in theory.md, for those that have some.
 SECTIONS = {
     "accelerate": ("gravity", "external_force", "drag", "spring", "kinematic"),
-    "collide": ("compound", "broad_phase", "speculative", "fast_bodies"),
+    "collide": ("compound", "broad_phase", "periodic_boundary", "speculative", "fast_bodies"),
     "rows": (
         *("contact_torque", "friction", "frictionless_contact", "rope", "joint"),
         *("joint_stop", "motor"),

@@ -24,6 +24,7 @@ AT_WORK = {
     "effects/contact_patch.yaml": ("contact_patch",),
     "effects/hertz_contact.yaml": ("hertz_contact",),
     "effects/falling_restitution.yaml": ("falling_restitution",),
+    "effects/periodic_boundary.yaml": ("periodic_boundary",),
     "effects/pile.yaml": ("broad_phase", "fast_bodies", "packed_sweeps"),
     "effects/joint.yaml": ("joint",),
     "effects/motor.yaml": ("joint_stop", "motor"),

@@ -23,6 +23,7 @@ from .manifold.own_normals import (
     put_point_normal,
 )
 from .manifold.point import LEFT_OUT, WHOLE, manifold_normal
+from .nearest_image import make_beside, make_swept_beside
 from .pairs import SHAPE_PAIRS
 from .records import put_normal
 from .rope import make_rope
@@ -47,8 +48,13 @@ def displacement(of_a, of_b, share, dt):
 def make_manifold(spec: Spec, names: tuple[str, ...]):
     """Return `kernel(kind, a, b, margin, scratch) -> count`: these pairs, ropes and joints.
 
-    Where a pair has normals of single points, every point has one then.
+    Where a pair has normals of single points, every point has one then. In a periodic cell it is
+    of the image of B that is nearest to A.
     """
+    return make_beside(spec, _make_manifold_in_place(spec, names))
+
+
+def _make_manifold_in_place(spec: Spec, names: tuple[str, ...]):
     any_pair = _make_manifold_of_joints(spec, names)
     if not has_own_normals(spec):
         return any_pair
@@ -131,9 +137,13 @@ def make(spec: Spec):
     speculative = step_terms(spec).ahead
     sweeps = row_terms(spec).swept
     is_fast: Any = make_is_fast(spec) if sweeps else None
-    culls = sweeps and not spec.has("broad_phase")
+    # Images of a periodic cell are nearer than bodies' own places.
+    culls = sweeps and not (spec.has("broad_phase") or spec.has("periodic_boundary"))
     is_apart: Any = make_is_apart(spec) if culls else None
-    swept_manifold: Any = make_swept_manifold(spec, manifold) if sweeps else None
+    swept_manifold: Any = None
+    if sweeps:
+        in_place = _make_manifold_in_place(spec, spec.shape_pairs)
+        swept_manifold = make_swept_beside(spec, make_swept_manifold(spec, in_place))
     share = 0.5 if step_terms(spec).mean_flight else 1.0
     compound, ropes = has_hook(spec, "place_parts"), row_terms(spec).taut
     bilateral, levers = row_terms(spec).bilateral, row_terms(spec).levers

@@ -25,6 +25,7 @@ NAMES: Final = (
     "joint_stop",
     "motor",
     "broad_phase",
+    "periodic_boundary",
     "gravity",
     "external_force",
     "varying_force",

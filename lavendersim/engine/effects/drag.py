@@ -121,15 +121,16 @@ def make_act(spec):
 
 def make_slowed_n(spec):
     """Return `kernel(contact, body_a, body_b) -> v_n` that drag adds in the step [m/s]."""
+    from ..collide.nearest_image import place_beside
     from ..vectors import Vec3, cross, dot, minus, plus, position
 
-    turns = step_terms(spec).turns
+    turns, beside = step_terms(spec).turns, place_beside(spec)
 
-    def slowed(body, x):
+    def slowed(body, arm):
         v = Vec3(body.slowed_vx, body.slowed_vy, body.slowed_vz)
         if turns:
             w = Vec3(body.slowed_wx, body.slowed_wy, body.slowed_wz)
-            v = plus(v, cross(w, minus(x, position(body))))
+            v = plus(v, cross(w, arm))
         return v
 
     slowed = kernel(slowed, spec)
@@ -138,9 +139,9 @@ def make_slowed_n(spec):
         x, total = position(contact), 0.0
         n = Vec3(contact.nx, contact.ny, contact.nz)
         if body_a.inv_m > 0.0:
-            total -= dot(n, slowed(body_a, x))
+            total -= dot(n, slowed(body_a, minus(x, position(body_a))))
         if body_b.inv_m > 0.0:
-            total += dot(n, slowed(body_b, x))
+            total += dot(n, slowed(body_b, minus(x, beside(body_a, body_b))))
         return total
 
     return kernel(slowed_n, spec)

@@ -89,12 +89,13 @@ def make_first_stop(spec: Spec) -> Any:
     """
     from ..approach import CREEP, NEVER, SHORT, make_slowest, normal, relative_velocity
     from ..block import set_tangents
+    from ..collide.nearest_image import place_beside
     from ..records import PLANE
     from ..row_terms import row_terms
     from ..vectors import Vec3, cross, dot, minus, plus, plus_scaled, position
     from . import made_once
 
-    slowest, vanishes = make_slowest(spec), make_vanishes(spec)
+    slowest, vanishes, beside = make_slowest(spec), make_vanishes(spec), place_beside(spec)
     terms = row_terms(spec)
     rolling, torsional = terms.rolling, terms.torsional
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
@@ -109,7 +110,7 @@ def make_first_stop(spec: Spec) -> Any:
         a, b = bodies[contact.a], bodies[contact.b]
         ma, mb, at = motion[contact.a], motion[contact.b], position(contact)
         v = relative_velocity(ma, mb)
-        v = plus(v, cross(Vec3(mb.wx, mb.wy, mb.wz), minus(at, position(b))))
+        v = plus(v, cross(Vec3(mb.wx, mb.wy, mb.wz), minus(at, beside(a, b))))
         v = minus(v, cross(Vec3(ma.wx, ma.wy, ma.wz), minus(at, position(a))))
         if moving_surface:
             set_tangents(contact)
@@ -125,7 +126,7 @@ def make_first_stop(spec: Spec) -> Any:
         # In the last part [m/s^2].
         a, b, at = bodies[contact.a], bodies[contact.b], position(contact)
         rate = Vec3(b.ax - a.ax, b.ay - a.ay, b.az - a.az)
-        rate = plus(rate, cross(Vec3(b.spin_ax, b.spin_ay, b.spin_az), minus(at, position(b))))
+        rate = plus(rate, cross(Vec3(b.spin_ax, b.spin_ay, b.spin_az), minus(at, beside(a, b))))
         rate = minus(rate, cross(Vec3(a.spin_ax, a.spin_ay, a.spin_az), minus(at, position(a))))
         return across(normal(contact), rate)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from lavendersim.cell.config import CellConfig
 from lavendersim.engine.effects import EFFECTS
+from lavendersim.experiment.checks.image_limits import limits_of_images
 from lavendersim.experiment.checks.messages import locate
 from lavendersim.experiment.text.node import Mark, Node, Path, key_mark
 from lavendersim.experiment.text.report import Report
@@ -17,7 +18,7 @@ def refuse_limits(config: CellConfig, tree: Node, report: Report) -> None:
     places: dict[Mark, str] = {}  # of several bodies of one surface the first is named
     for path, sentence in limits_of(config):
         places.setdefault(_place(tree, path), sentence)
-    for excludes in _EXCLUDING:
+    for excludes in (*_EXCLUDING, limits_of_images):
         for path, sentence in excludes(config):
             places.setdefault(_place(tree, path), f"{path[-1]}: {sentence}")
     for mark, sentence in places.items():

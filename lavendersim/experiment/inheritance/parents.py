@@ -59,7 +59,7 @@ def with_parents(root: Node, path: Path, name: str, report: Report) -> Whole | N
     files = ", ".join(os.path.relpath(file, chain[0].parent) for file in chain)
     text = f"# {' '.join(files.split())}: merged, the first over those that it extends.\n"
     text += as_yaml(tree.data)
-    _check_size(text, named.mark, report)
+    check_size(text, EXTENDS, named.mark, report)
     return Whole(tree, text, dict(zip(names, chain, strict=True)))
 
 
@@ -123,8 +123,9 @@ def _without(tree: Node) -> Node:
     return Node(entries, tree.mark, tree.keys, tree.incomplete)
 
 
-def _check_size(text: str, mark: Mark, report: Report) -> None:
+def check_size(text: str, key: str, mark: Mark, report: Report) -> None:
+    """Note at a key why the text of several files is longer than one may be."""
     own = Report("")
     parse(text.encode("utf-8", "surrogatepass"), own)
     for defect in own.defects[:1]:
-        report.add(mark, f"{EXTENDS}: of all files together: {defect.message}")
+        report.add(mark, f"{key}: of all files together: {defect.message}")

@@ -6,11 +6,14 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
+from lavendersim.experiment.text.place import Place
+from lavendersim.quantities.found import near
 from lavendersim.quantities.model import ConfigModel
 from lavendersim.quantities.quantity import Position, Quantity, Vector
 
 MOST_TRIANGLES: Final = 1 << 17  # edges are counted in twenty bits of a contact's feature
 MOST_VERTICES: Final = 3 * MOST_TRIANGLES
+FILE: Final = "file"
 
 Corner = Annotated[
     tuple[int, int, int], Vector(3, Quantity(whole=True, minimum=0, maximum=MOST_VERTICES))
@@ -25,18 +28,48 @@ class Mesh(ConfigModel):
     """A surface of triangles, touched from outside: where their corners run counter-clockwise."""
 
     kind: Literal["mesh"]
-    vertices: tuple[Position, ...] = Field(
+    vertices: tuple[Position, ...] | None = Field(
+        default=None,
         min_length=3,
         max_length=MOST_VERTICES,
         description="[m] in the body's frame, whose origin is `position`; those at one place, to "
         "the last bit, are one",
     )
-    triangles: tuple[Corner, ...] = Field(
+    triangles: tuple[Corner, ...] | None = Field(
+        default=None,
         min_length=1,
         max_length=MOST_TRIANGLES,
         description="each by three rows of `vertices`, from 0, counter-clockwise seen from "
         "outside, that share whole sides. A body whose centre is behind one does not touch it",
     )
+    file: str | None = Field(
+        default=None,
+        description="instead of both: a file *.obj or *.stl with them, from this file's folder",
+    )
+    scale: Annotated[float, Quantity(above=0)] = Field(
+        default=1.0, description="[-] of all vertices; 1/1000 of a file in millimetres"
+    )
+
+    @classmethod
+    def rules(cls, at: Place) -> None:
+        """It has vertices and triangles; those of a file are here in its place by now."""
+        if (mark := at.written(FILE)) is not None:
+            where = "of a config's file, in scene.bodies or scene.shapes"
+            at.refuse(mark, f"{FILE}: expected it as the key of a mesh {where}; sweep its name")
+            return
+        unknown = [key for key in at.node.entries if key not in cls.model_fields]
+        for key, meaning in _NEEDED.items():
+            if at.written(key) is None:
+                if at.node.incomplete or any(near(one, cls.model_fields) == key for one in unknown):
+                    at.doubt()  # a refused key may have been this one
+                else:
+                    at.lacks(key, meaning)
+
+
+_NEEDED: Final = {
+    "vertices": "[m] a list of [x, y, z], or a file: part.stl",
+    "triangles": "a list of [row, row, row] of vertices, or a file: part.stl",
+}
 
 
 class HeightField(ConfigModel):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from lavendersim.cell.shapes import CellMesh
 from lavendersim.experiment.models.meshes import MOST_TRIANGLES, HeightField, Mesh
 from lavendersim.experiment.resolve.placement import SceneError
-from lavendersim.quantities.quantity import Vector3
+from lavendersim.quantities.quantity import LARGEST, Vector3
 
 Triangles = tuple[tuple[int, int, int], ...]
 
@@ -17,7 +17,7 @@ def resolve_surface(shape: Mesh | HeightField) -> CellMesh:
     if isinstance(shape, HeightField):
         vertices, triangles = _of_heights(shape)
     else:
-        vertices, triangles = shape.vertices, shape.triangles
+        vertices, triangles = _scaled(shape), shape.triangles or ()
         for number, triangle in enumerate(triangles):
             for corner, row in enumerate(triangle):
                 if row >= len(vertices):
@@ -33,6 +33,16 @@ def resolve_surface(shape: Mesh | HeightField) -> CellMesh:
         cell = f"a triangle between rows {row} and {row + 1}, heights {column} and {column + 1}"
         raise SceneError(("heights",), f"{cell}: {error}") from None
     return CellMesh(kind="mesh", vertices=vertices, triangles=triangles)
+
+
+def _scaled(mesh: Mesh) -> tuple[Vector3, ...]:
+    """Return the vertices of a mesh [m]; raises SceneError where one is too far away."""
+    vertices, scale = mesh.vertices or (), mesh.scale
+    if scale == 1.0:
+        return vertices
+    if not scale * max(abs(x) for vertex in vertices for x in vertex) <= LARGEST:
+        raise SceneError(("scale",), f"scale: expected vertices within {LARGEST:g} [m]")
+    return tuple((scale * x, scale * y, scale * z) for x, y, z in vertices)
 
 
 def _of_heights(field: HeightField) -> tuple[tuple[Vector3, ...], Triangles]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -26,6 +28,20 @@ def test_extent_holds_every_sphere_over_the_whole_trace(one_ball):
     height = one_ball.pose[:, 1, 2]
     assert room.low.tolist() == [-0.1, -0.1, height.min() - 0.1]
     assert room.high.tolist() == [0.1, 0.1, height.max() + 0.1]
+
+
+def test_what_goes_round_a_periodic_cell_is_shown_within_it(one_ball):
+    """Heights of the ball in a cell of 1/8 m, whichever way it goes through that."""
+    periodic = SimpleNamespace(x=None, y=None, z=(0.25, 0.375))
+    shown = SimpleNamespace(
+        bodies=one_ball.bodies,
+        recorded_pose=one_ball.recorded_pose,
+        config=SimpleNamespace(scene=SimpleNamespace(periodic=periodic)),
+    )
+    assert np.ptp(one_ball.pose[:, 1, 2]) > 0.125
+    room = scene.extent(shown, scene.shapes(one_ball.config))
+    assert room.low[2] >= 0.25 - 0.1
+    assert room.high[2] < 0.375 + 0.1
 
 
 def test_scene_of_planes_alone_has_an_extent(one_ball):

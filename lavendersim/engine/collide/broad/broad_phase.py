@@ -19,9 +19,11 @@ from ...effects import has_hook
 from ...records import BOWL, COMPOUND, DRUM, I8, PLANE, ROPE_END, Field, dtype
 from ...row_terms import row_terms
 from ...spec import Spec
+from ...step_terms import step_terms
 from ..rope import make_count_connections
 from ..shapes import has_cavity
 from .fat_bounds import FAT_BOUNDS, make_is_valid, make_place_bounds
+from .images import make_sort_images
 from .pair_rows import make_put_pair, make_without_joined, make_write_rows
 from .tree import (
     BOUNDS,
@@ -60,11 +62,11 @@ class BroadPhaseWork(NamedTuple):
 
     state: np.ndarray  # (1,) STATE
     fat_bounds: np.ndarray  # (N,) FAT_BOUNDS
-    leaves: np.ndarray  # (N,) LEAF, sorted
+    leaves: np.ndarray  # (M,) LEAF, sorted; M: bodies, and images that they may have
     nodes: np.ndarray  # BOUNDS of the levels above
     starts: np.ndarray  # (LEVELS,)
-    codes: np.ndarray  # (N,)
-    order: np.ndarray  # (N,) body of each leaf
+    codes: np.ndarray  # (M,)
+    order: np.ndarray  # (M,) body of each leaf; with images, body times ALL and the image's code
     other_codes: np.ndarray
     other_order: np.ndarray
     counts: np.ndarray  # digits of the sort, or bodies
@@ -72,8 +74,12 @@ class BroadPhaseWork(NamedTuple):
     sorted: PairColumns
 
 
-def allocate_broad_phase(body_count: int, pair_capacity: int) -> BroadPhaseWork:
-    """Return work arrays that hold no list yet; to enlarge them, allocate anew."""
+def allocate_broad_phase(body_count: int, pair_capacity: int, images: int = 1) -> BroadPhaseWork:
+    """Return work arrays that hold no list yet; to enlarge them, allocate anew.
+
+    images: of a body, itself included (`most_images`).
+    """
+    leaves = images * body_count
 
     def numbers(count: int) -> np.ndarray:
         return np.zeros(count, np.int64)
@@ -84,13 +90,13 @@ def allocate_broad_phase(body_count: int, pair_capacity: int) -> BroadPhaseWork:
     return BroadPhaseWork(
         state=np.zeros(1, dtype(STATE)),
         fat_bounds=np.zeros(body_count, dtype(FAT_BOUNDS)),
-        leaves=np.zeros(body_count, dtype(LEAF)),
-        nodes=np.zeros(node_count(body_count), dtype(BOUNDS)),
+        leaves=np.zeros(leaves, dtype(LEAF)),
+        nodes=np.zeros(node_count(leaves), dtype(BOUNDS)),
         starts=numbers(LEVELS),
-        codes=numbers(body_count),
-        order=numbers(body_count),
-        other_codes=numbers(body_count),
-        other_order=numbers(body_count),
+        codes=numbers(leaves),
+        order=numbers(leaves),
+        other_codes=numbers(leaves),
+        other_order=numbers(leaves),
         counts=numbers(max(DIGITS, body_count) + 1),
         found=columns(),
         sorted=columns(),
@@ -167,7 +173,7 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
     is_valid, place_bounds, sort_leaves = (
         make_is_valid(spec),
         make_place_bounds(spec),
-        make_sort_leaves(spec),
+        make_sort_images(spec) if step_terms(spec).periodic else make_sort_leaves(spec),
     )
     put_pair = make_put_pair(spec)
     write_rows = make_write_rows(spec, [name for name, _ in surface])
@@ -224,9 +230,9 @@ def make(spec: Spec, surface: list[Field] | tuple[Field, ...] = ()):
         state.needed = kept + found
         if found > min(pairs.shape[0] - kept, work.found.first.shape[0]):
             return -1
-        write_rows(bodies, templates, work, found, pairs, kept)
-        state.listed, state.count = 1, found
+        count = write_rows(bodies, templates, work, found, pairs, kept)
+        state.listed, state.count = 1, count
         state.rebuilds += 1
-        return kept + found
+        return kept + count
 
     return kernel(broad_phase, spec)

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from ...compile import kernel
 from ...records import ROPE
 from ...spec import Spec
+from ...step_terms import step_terms
 
 
 def make_copy_fields(spec: Spec, names: Sequence[str]):
@@ -90,12 +91,12 @@ def make_without_joined(spec: Spec):
 
 
 def make_write_rows(spec: Spec, surface: Sequence[str]):
-    """Return `kernel(bodies, templates, work, found, pairs, first)`: rows from the first one on.
+    """Return `kernel(bodies, templates, work, found, pairs, first) -> count`: from the first on.
 
-    surface: fields of the templates.
+    surface: fields of the templates. A pair that is found twice has one row.
     Two stable counting sorts, by the second and then by the first body: linear whatever the keys.
     """
-    copy_surface = make_copy_fields(spec, surface)
+    copy_surface, periodic = make_copy_fields(spec, surface), step_terms(spec).periodic
 
     def sort(by, pairs, target, counts, bodies_count, found):
         # Stable, by a column of bodies.
@@ -116,14 +117,20 @@ def make_write_rows(spec: Spec, surface: Sequence[str]):
         bodies_count, by_second, in_order = bodies.shape[0], work.sorted, work.found
         sort(work.found.second, work.found, by_second, work.counts, bodies_count, found)
         sort(by_second.first, by_second, in_order, work.counts, bodies_count, found)
+        made = 0
         for p in range(found):
             i, j = in_order.first[p], in_order.second[p]
-            template, row = templates[bodies[i].material, bodies[j].material], pairs[first + p]
+            if periodic:  # they may meet as one and the other's image, and the other way round
+                if p > 0 and in_order.first[p - 1] == i and in_order.second[p - 1] == j:
+                    continue
+            template, row = templates[bodies[i].material, bodies[j].material], pairs[first + made]
             row.kind, row.key = template.kind, i * bodies_count + j
             if template.swap == 1:
                 row.a, row.b = j, i
             else:
                 row.a, row.b = i, j
             copy_surface(row, template)
+            made += 1
+        return made
 
     return kernel(write_rows, spec)

@@ -1,0 +1,132 @@
+"""Images of bodies for the tree of a periodic cell: as many as reach into it.
+
+Each body stands in the cell from 0 to L once, and once more a period away on every side where its
+bounds leave the cell. Two bodies whose bounds meet across a face meet there as one of them and an
+image of the other; what is found twice, or as two images, has one row of pairs.
+"""
+
+from __future__ import annotations
+
+from math import floor
+from typing import Any
+
+import numpy as np
+
+from ...compile import inner, kernel
+from ...effects import has_hook
+from ...records import BOWL, COMPOUND, DRUM, PLANE, ROPE_END
+from ...spec import Spec
+from ..shapes import has_cavity
+from .tree import PLACE_BITS, cell, hilbert, size_class, sort_by_code
+
+ALONG_AN_AXIS = 3  # images: a period below, in the cell, a period above
+ALL = ALONG_AN_AXIS**3
+
+
+def most_images(bodies: np.ndarray) -> int:
+    """Return how many images a body may have at most, itself included."""
+    names = bodies.dtype.names or ()
+    axes = [axis for axis in "xyz" if f"period_{axis}" in names]
+    periodic = [axis for axis in axes if np.any(bodies[f"period_{axis}"] > 0.0)]
+    return int(ALONG_AN_AXIS ** len(periodic))
+
+
+@inner
+def wrapped(x, period):
+    """Return a coordinate within [0, period); period 0: as it is [m]."""
+    if period > 0.0:
+        return x - period * floor(x / period)
+    return x
+
+
+@inner
+def reaches_in(x, half, period, image):
+    """Whether an image, -1, 0 or 1 periods away, of bounds around a wrapped place is required."""
+    if image == 0:
+        return True
+    if period == 0.0:
+        return False
+    if image > 0:
+        return x - half < 0.0
+    return x + half > period
+
+
+@inner
+def periods_of(code):
+    """Return how many periods an image is away along x, y and z, by its code from 0 to ALL."""
+    return code % 3 - 1, code // 3 % 3 - 1, code // 9 - 1
+
+
+def make_sort_images(spec: Spec) -> Any:
+    """Return `kernel(bodies, work) -> leaves`: bodies and images with bounds, sorted for the tree.
+
+    What is not periodic has one leaf each, as in `broad_phase.make_sort_leaves`.
+    """
+    compound, sleeps = has_hook(spec, "place_parts"), has_hook(spec, "update_sleeping")
+    connects, cavities = spec.connects, has_cavity(spec)
+
+    def sort_images(bodies, work):
+        fat_bounds, codes, order, leaves = work.fat_bounds, work.codes, work.order, work.leaves
+        low_x, low_y, low_z = np.inf, np.inf, np.inf
+        high_x, high_y, high_z = -np.inf, -np.inf, -np.inf
+        largest, count = 0.0, 0
+        for i in range(bodies.shape[0]):
+            body, r = bodies[i], fat_bounds[i]
+            if body.shape == PLANE or body.shape == COMPOUND:
+                continue
+            if connects:
+                if body.shape == ROPE_END:
+                    continue
+            if cavities:
+                if body.shape == BOWL or body.shape == DRUM:
+                    continue
+            x, y = wrapped(r.x, body.period_x), wrapped(r.y, body.period_y)
+            z = wrapped(r.z, body.period_z)
+            largest = max(largest, max(r.ex, max(r.ey, r.ez)))
+            for code in range(ALL):
+                kx, ky, kz = periods_of(code)
+                if not reaches_in(x, r.ex, body.period_x, kx):
+                    continue
+                if not reaches_in(y, r.ey, body.period_y, ky):
+                    continue
+                if not reaches_in(z, r.ez, body.period_z, kz):
+                    continue
+                leaf = leaves[count]
+                leaf.x = x + kx * body.period_x
+                leaf.y = y + ky * body.period_y
+                leaf.z = z + kz * body.period_z
+                low_x, low_y, low_z = min(low_x, leaf.x), min(low_y, leaf.y), min(low_z, leaf.z)
+                high_x, high_y = max(high_x, leaf.x), max(high_y, leaf.y)
+                high_z = max(high_z, leaf.z)
+                order[count] = i * ALL + code
+                count += 1
+        side = 1.0 / max(high_x - low_x, max(high_y - low_y, high_z - low_z))
+        for k in range(count):
+            leaf, r = leaves[k], fat_bounds[order[k] // ALL]
+            place = hilbert(
+                cell((leaf.x - low_x) * side),
+                cell((leaf.y - low_y) * side),
+                cell((leaf.z - low_z) * side),
+            )
+            size = size_class(max(r.ex, max(r.ey, r.ez)), largest)
+            codes[k] = (size << (3 * PLACE_BITS)) | place
+        sort_by_code(codes, order, work.other_codes, work.other_order, work.counts, count)
+        for k in range(count):
+            i, code = order[k] // ALL, order[k] % ALL
+            body, r, leaf = bodies[i], fat_bounds[i], leaves[k]
+            kx, ky, kz = periods_of(code)
+            leaf.x = wrapped(r.x, body.period_x) + kx * body.period_x
+            leaf.y = wrapped(r.y, body.period_y) + ky * body.period_y
+            leaf.z = wrapped(r.z, body.period_z) + kz * body.period_z
+            leaf.low_x, leaf.low_y, leaf.low_z = leaf.x - r.ex, leaf.y - r.ey, leaf.z - r.ez
+            leaf.high_x, leaf.high_y, leaf.high_z = leaf.x + r.ex, leaf.y + r.ey, leaf.z + r.ez
+            leaf.radius = r.radius + body.bound
+            leaf.body, leaf.owner = i, i
+            if compound:
+                leaf.owner = body.owner
+            leaf.still = 1 if bodies[leaf.owner].inv_m == 0.0 else 0
+            if sleeps:  # it may wake while the list is kept
+                leaf.still -= bodies[leaf.owner].asleep
+        return count
+
+    return kernel(sort_images, spec)
