@@ -238,7 +238,7 @@ class _KernelCompiler(Compiler):
         self, function, symbol, typingctx, targetctx, library, args, return_type, flags, locals
     ):
         code = self.code(targetctx.codegen(), flags, args)
-        # What numba has learned to compile is asked once, by the kernel that Python calls.
+        self.learn(typingctx, targetctx)
         typing, target = copy(typingctx), copy(targetctx)
         typing.refresh = target.refresh = _nothing
         super().__init__(typing, target, code, args, return_type, flags, locals)
@@ -254,6 +254,10 @@ class _KernelCompiler(Compiler):
         """Return the library that the code goes to."""
         raise NotImplementedError
 
+    @staticmethod
+    def learn(typing, target):
+        """Let contexts take what numba has learned to compile: done by the whole kernel, once."""
+
 
 class PartCompiler(_KernelCompiler):
     """For a kernel that only kernels call."""
@@ -266,6 +270,12 @@ class PartCompiler(_KernelCompiler):
 
 class ObjectCompiler(_KernelCompiler):
     """For a kernel that Python calls; its code can be kept on disk."""
+
+    @staticmethod
+    def learn(typing, target):
+        """Take it. Code that is loaded needs none of it, which takes a quarter of a second."""
+        typing.refresh()
+        target.refresh()
 
     def code(self, codegen, flags, args):
         """Return a library that links all that it calls."""
@@ -338,8 +348,6 @@ class Kernel(CPUDispatcher):
         """Compile for Python, which needs a door."""
         with global_compiler_lock, shortened(), nested():
             args = tuple(normalize_signature(sig)[0])
-            self.typingctx.refresh()
-            self.targetctx.refresh()
             # Code of one kernel may be in a process twice, loaded and compiled: each has its name.
             symbol = f"{symbol_of(self.py_func, key_of(self, args))}_{next(_objects)}"
             self._compiler.pipeline_class = partial(ObjectCompiler, self.py_func, symbol)
