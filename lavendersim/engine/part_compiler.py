@@ -123,6 +123,19 @@ class KernelObject(_Linking):
         self._symbols = merge(self._final_module, self.parts, self.records, self._codegen)
         super().finalize()
 
+    def serialize_using_object_code(self) -> tuple[str, str, tuple[bytes, bytes]]:
+        """Return the object, and of its bitcode the names of its functions alone.
+
+        Nothing links with a whole kernel that was loaded, and to read all takes half of loading it.
+        """
+        name, kind, (code, _) = super().serialize_using_object_code()
+        defined = "".join(
+            f'define void @"{function.name}"() {{\n  unreachable\n}}\n'
+            for function in self.get_defined_functions()
+            if function.linkage != Linkage.internal
+        )
+        return name, kind, (code, parse_assembly(defined).as_bitcode())
+
     def _optimize_final_module(self) -> None:
         """Optimise once."""
         optimise(self._final_module, self._symbols, self._codegen)

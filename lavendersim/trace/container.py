@@ -167,7 +167,7 @@ class Container:
     def __init__(self, path: Path) -> None:
         self.index = FileIndex()
         self._path = path
-        self._stream = path.open("wb")
+        self._stream = path.open("wb", buffering=0)  # short records are joined here
         self._unwritten: list[bytes] = []  # records that go with the next chunk
         self._summed: list[bytes] = []  # of them, those that are in the checksums
         self._registered: list[Registered] = []
@@ -281,8 +281,9 @@ class Container:
         summed, self._summed = self._summed, []
         with named(self._path):
             for data in _joined(summed):
-                self._stream.write(data)
-            self._stream.flush()
+                left = memoryview(data)
+                while left:
+                    left = left[self._stream.write(left) :]
 
 
 def _joined(pieces: Iterable[bytes]) -> Iterator[bytes]:
