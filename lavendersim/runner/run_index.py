@@ -4,8 +4,9 @@ While cells run, the index (`cells_index`) has them as pending, and two lines ar
 each that ends, when its log is closed and when that is measured (`cell_outcome`): to write all of
 the index every time would take, of a sweep, the square of its cells. Who reads the index reads
 both. Cells so brief that several are run together have one line each, all in one write. A line is
-written at once by the process that ran the cell, so it is whole after a kill or is not counted. It is not flushed to the disk: after a power loss it may speak of a log that is cut, which
-its digest shows.
+written at once by the process that ran the cell, so it is whole after a kill or is not counted. It
+is not flushed to the disk: after a power loss it may speak of a log that is cut, which its digest
+shows.
 """
 
 from __future__ import annotations
