@@ -18,7 +18,6 @@ from typing import Any, NamedTuple
 
 from llvmlite import binding as llvm
 from numba.core.compiler import CompileResult
-from numba.core.runtime import _nrt_python
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
@@ -129,11 +128,11 @@ def _name_helpers(target_context: Any) -> None:
     Numba would compile its count of references first, which such code brings along.
     """
     try:
-        helpers = _nrt_python.c_helpers
-    except AttributeError:
+        from numba.core.runtime._nrt_python import c_helpers
+    except ImportError:
         rtsys.initialize(target_context)
         return
-    for name, address in helpers.items():
+    for name, address in c_helpers.items():
         llvm.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
 
 
