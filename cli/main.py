@@ -45,6 +45,8 @@ from lavender_cli import (
 # larger pages save nothing, and to find memory for them took a third of the processor time of a run
 # on a virtual machine. Numpy reads this as it is loaded; who has set it keeps it.
 os.environ.setdefault("NUMPY_MADVISE_HUGEPAGE", "0")
+# Of pydantic's plugins none is looked for: to ask each distribution takes as long as most checks.
+os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
 DISK_FULL = 6
 # What these do goes on when nobody reads what they print.

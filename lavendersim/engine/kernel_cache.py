@@ -12,9 +12,11 @@ import pickle
 import struct
 import time
 from collections.abc import Callable, Container
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from llvmlite import binding as llvm
 from numba.core.compiler import CompileResult
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
@@ -89,7 +91,7 @@ class KernelCache:
 
         # Numba's own cache readies the context to compile before it loads, a quarter of a second
         # that machine code does not need; of all that, arrays passed from Python need this.
-        rtsys.initialize(target_context)
+        _name_helpers(target_context)
         separate, kernel = pickle.loads(payload)
         load(separate, target_context.codegen())
         return CompileResult._rebuild(target_context, *kernel)
@@ -117,6 +119,21 @@ class KernelCache:
         """Do nothing; the cache is always on."""
 
     disable = enable
+
+
+@cache
+def _name_helpers(target_context: Any) -> None:
+    """Let code that is loaded call what numba has for arrays of Python.
+
+    Numba would compile its count of references first, which such code brings along.
+    """
+    try:
+        from numba.core.runtime._nrt_python import c_helpers
+    except ImportError:
+        rtsys.initialize(target_context)
+        return
+    for name, address in c_helpers.items():
+        llvm.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
 
 
 def cached(make: Callable[[Spec], Any], spec: Spec) -> Any:

@@ -14,7 +14,7 @@ import time
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from lavendersim.durable_files import write_whole
 
@@ -37,6 +37,9 @@ def _is_private(path: Path) -> bool:
     return own and not status.st_mode & 0o022
 
 
+A_TICK: Final = 2_000_000_000  # [ns] that no file system's clock exceeds
+# What `kernels_on_disk` found, and when the directory had changed last [ns]; 0: any time.
+_listed: dict[Path, tuple[int, set[str]]] = {}
 _unseen = math.inf  # [byte] written by this process since it looked whether all fits
 _why_not = ""  # nothing may be kept, whatever the place
 
@@ -75,7 +78,13 @@ def kernels_on_disk() -> set[str]:
     if not place.name:
         return set()
     with contextlib.suppress(OSError):
-        return {name.rpartition("-")[0] for name in os.listdir(place) if name.endswith(KERNEL)}
+        begun, changed = time.time_ns(), place.stat().st_mtime_ns
+        if _listed.get(place, (0, set()))[0] != changed:
+            names = os.listdir(place)
+            found = {name.rpartition("-")[0] for name in names if name.endswith(KERNEL)}
+            # What is written within one tick of a file system's clock changes no time once more.
+            _listed[place] = (changed if begun - changed > A_TICK else 0), found
+        return _listed[place][1]
     return set()
 
 

@@ -123,6 +123,19 @@ class KernelObject(_Linking):
         self._symbols = merge(self._final_module, self.parts, self.records, self._codegen)
         super().finalize()
 
+    def serialize_using_object_code(self) -> tuple[str, str, tuple[bytes, bytes]]:
+        """Return the object, and of its bitcode the names of its functions alone.
+
+        Nothing links with a whole kernel that was loaded, and to read all takes half of loading it.
+        """
+        name, kind, (code, _) = super().serialize_using_object_code()
+        defined = "".join(
+            f'define void @"{function.name}"() {{\n  unreachable\n}}\n'
+            for function in self.get_defined_functions()
+            if function.linkage != Linkage.internal
+        )
+        return name, kind, (code, parse_assembly(defined).as_bitcode())
+
     def _optimize_final_module(self) -> None:
         """Optimise once."""
         optimise(self._final_module, self._symbols, self._codegen)
@@ -238,7 +251,7 @@ class _KernelCompiler(Compiler):
         self, function, symbol, typingctx, targetctx, library, args, return_type, flags, locals
     ):
         code = self.code(targetctx.codegen(), flags, args)
-        # What numba has learned to compile is asked once, by the kernel that Python calls.
+        self.learn(typingctx, targetctx)
         typing, target = copy(typingctx), copy(targetctx)
         typing.refresh = target.refresh = _nothing
         super().__init__(typing, target, code, args, return_type, flags, locals)
@@ -254,6 +267,10 @@ class _KernelCompiler(Compiler):
         """Return the library that the code goes to."""
         raise NotImplementedError
 
+    @staticmethod
+    def learn(typing, target):
+        """Let contexts take what numba has learned to compile: done by the whole kernel, once."""
+
 
 class PartCompiler(_KernelCompiler):
     """For a kernel that only kernels call."""
@@ -266,6 +283,12 @@ class PartCompiler(_KernelCompiler):
 
 class ObjectCompiler(_KernelCompiler):
     """For a kernel that Python calls; its code can be kept on disk."""
+
+    @staticmethod
+    def learn(typing, target):
+        """Take it. Code that is loaded needs none of it, which takes a quarter of a second."""
+        typing.refresh()
+        target.refresh()
 
     def code(self, codegen, flags, args):
         """Return a library that links all that it calls."""
@@ -338,8 +361,6 @@ class Kernel(CPUDispatcher):
         """Compile for Python, which needs a door."""
         with global_compiler_lock, shortened(), nested():
             args = tuple(normalize_signature(sig)[0])
-            self.typingctx.refresh()
-            self.targetctx.refresh()
             # Code of one kernel may be in a process twice, loaded and compiled: each has its name.
             symbol = f"{symbol_of(self.py_func, key_of(self, args))}_{next(_objects)}"
             self._compiler.pipeline_class = partial(ObjectCompiler, self.py_func, symbol)

@@ -358,12 +358,9 @@ def is_compiled(spec: Spec) -> bool:
 def uncompiled(specs: Iterable[Spec]) -> list[Spec]:
     """Return the specs, each once, whose kernel is compiled neither in this process nor on disk.
 
-    The disk is read once for all of them: it may hold tens of thousands of files.
+    The disk is read once for all of them, if at all: it may hold tens of thousands of files.
     """
-    kept = kernels_on_disk()
     kernels = {spec: advance_for(spec) for spec in specs}
-    return [
-        spec
-        for spec, kernel in kernels.items()
-        if not kernel.overloads and not kernel._cache.is_of(kept)
-    ]
+    absent = {spec: kernel for spec, kernel in kernels.items() if not kernel.overloads}
+    kept = kernels_on_disk() if absent else set()
+    return [spec for spec, kernel in absent.items() if not kernel._cache.is_of(kept)]

@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 from lavendersim.engine.compile import compiler_is_off
 from lavendersim.engine.kernel_store import directory
 from lavendersim.engine.spec import Spec
-from lavendersim.engine.step import is_compiled
+from lavendersim.engine.step import is_compiled, uncompiled
 from lavendersim.engine.together import advance_engines, is_possible
 from lavendersim.errors import UsageError
 
@@ -68,8 +68,9 @@ def outcomes_of(
         most = TOGETHER if done > len(first) and latest <= BRIEF else 1
         batch = next(_batches(ordered[done : done + most], most))
         _load_call(batch)
-        compiles = done < len(first) and not is_compiled(job.plan.spec)
-        begun = missing.get(job.plan.spec) if compiles else None
+        begun = missing.get(job.plan.spec) if done < len(first) else None
+        if begun is not None and is_compiled(job.plan.spec):  # by a cell before, or beside
+            begun = None
         begin, begin_here = perf_counter(), process_time()
         ended = run_and_measure(batch, _beginning(job, begun, tally, progress))
         compiled = sum(one.outcome.compile_ns for one in ended) / 1e9
@@ -157,18 +158,19 @@ class _Missing(NamedTuple):
 
 def _missing(first: list[CellJob]) -> dict[Spec, _Missing]:
     """Return each kernel that is to be compiled, once, with the first cell that needs it."""
-    jobs: dict[Spec, CellJob] = {}
-    for job in first:
-        if not is_compiled(job.plan.spec):
-            jobs.setdefault(job.plan.spec, job)
-    if not jobs:
+    specs = uncompiled(job.plan.spec for job in first)
+    if not specs:
         return {}
     from lavendersim.scene.explanation import title_of  # late: only what compiles needs a title
 
     plans = [job.plan for job in first]
+    jobs = {job.plan.spec: job for job in reversed(first)}  # the first of each
     return {
-        spec: _Missing(job, Compilation(job.plan, title_of(job.plan, plans), number, len(jobs)))
-        for number, (spec, job) in enumerate(jobs.items(), start=1)
+        spec: _Missing(
+            jobs[spec],
+            Compilation(jobs[spec].plan, title_of(jobs[spec].plan, plans), number, len(specs)),
+        )
+        for number, spec in enumerate(specs, start=1)
     }
 
 

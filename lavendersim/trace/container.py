@@ -18,7 +18,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
 import zstandard
 from mcap.opcode import Opcode
 from mcap.records import (
@@ -42,6 +41,7 @@ from lavendersim.durable_files import named
 from lavendersim.trace.file_digest import FileDigest
 from lavendersim.trace.record_bytes import pieces_of, to_bytes
 from lavendersim.trace.whole import MAGIC, LogDigest
+from lavendersim.trace.wire import INDEX_ENTRY
 
 LIBRARY = "lavender"
 CRC_KEY = "crc32"
@@ -50,9 +50,6 @@ LONG = 64 * 1024  # [byte] of a record that is not copied to be written with oth
 
 _of_thread = threading.local()
 _MESSAGE_INDEX = struct.Struct("<BQHI").pack  # opcode, length, channel, size of the entries
-
-# one entry of a MessageIndex
-INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
 
 
 class Messages(NamedTuple):
@@ -167,7 +164,7 @@ class Container:
     def __init__(self, path: Path) -> None:
         self.index = FileIndex()
         self._path = path
-        self._stream = path.open("wb")
+        self._stream = path.open("wb", buffering=0)  # short records are joined here
         self._unwritten: list[bytes] = []  # records that go with the next chunk
         self._summed: list[bytes] = []  # of them, those that are in the checksums
         self._registered: list[Registered] = []
@@ -281,8 +278,9 @@ class Container:
         summed, self._summed = self._summed, []
         with named(self._path):
             for data in _joined(summed):
-                self._stream.write(data)
-            self._stream.flush()
+                left = memoryview(data)
+                while left:
+                    left = left[self._stream.write(left) :]
 
 
 def _joined(pieces: Iterable[bytes]) -> Iterator[bytes]:

@@ -21,8 +21,8 @@ import numpy as np
 
 from lavendersim.trace import layout
 from lavendersim.trace.contact_columns import column_form
-from lavendersim.trace.container import INDEX_ENTRY
 from lavendersim.trace.points import point_form
+from lavendersim.trace.wire import INDEX_ENTRY
 
 WORD: Final = 8  # [B] of a number
 SHARE_OF_STEP: Final = 0.5

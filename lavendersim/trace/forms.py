@@ -16,7 +16,7 @@ from mcap.records import Channel, Schema
 
 from lavendersim.trace import descriptors, layout
 from lavendersim.trace.contact_columns import ColumnForm, column_form, rules_of
-from lavendersim.trace.container import INDEX_ENTRY, Closed, Messages, Registered, closed
+from lavendersim.trace.container import Closed, Messages, Registered, closed
 from lavendersim.trace.encode import Encoder, Streams, encoders
 from lavendersim.trace.schema import (
     CONTACT_COLUMNS,
@@ -26,7 +26,7 @@ from lavendersim.trace.schema import (
     Column,
 )
 from lavendersim.trace.streams import Light
-from lavendersim.trace.wire import Template
+from lavendersim.trace.wire import INDEX_ENTRY, Template
 
 RULES = "derived"  # of the metadata of /contact_columns: column -> rule, as JSON
 

@@ -40,7 +40,6 @@ from mcap.records import (
 from lavendersim.errors import TraceError
 from lavendersim.trace.container import (
     CRC_KEY,
-    INDEX_ENTRY,
     FileIndex,
     Messages,
     index_of,
@@ -51,7 +50,7 @@ from lavendersim.trace.layout import RECORD_HEADER
 from lavendersim.trace.limits import check_chunk, check_chunks
 from lavendersim.trace.record_bytes import to_bytes
 from lavendersim.trace.whole import LogDigest, read_end
-from lavendersim.trace.wire import Bytes, gather
+from lavendersim.trace.wire import INDEX_ENTRY, Bytes, gather
 
 PARSERS: dict[int, Any] = {
     Opcode.HEADER: Header,

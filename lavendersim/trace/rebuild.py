@@ -16,7 +16,7 @@ from mcap.opcode import Opcode
 from mcap.records import Chunk, ChunkIndex
 from numpy.typing import NDArray
 
-from lavendersim.trace.container import INDEX_ENTRY, Messages, message_index
+from lavendersim.trace.container import Messages, message_index
 from lavendersim.trace.index import (
     MESSAGE,
     ChunkContent,
@@ -28,7 +28,7 @@ from lavendersim.trace.index import (
 )
 from lavendersim.trace.layout import RECORD_HEADER
 from lavendersim.trace.limits import check_chunk
-from lavendersim.trace.wire import gather
+from lavendersim.trace.wire import INDEX_ENTRY, gather
 
 REFUSALS: Final = (
     *(McapError, zstandard.ZstdError, struct.error, EOFError),

@@ -14,7 +14,7 @@ from lavendersim.clock import Clock
 from lavendersim.trace import layout
 from lavendersim.trace.blocks import Counted, cumulative
 from lavendersim.trace.contact_columns import ContactGroup, column_form, message_of
-from lavendersim.trace.container import INDEX_ENTRY, Messages
+from lavendersim.trace.container import Messages
 from lavendersim.trace.message_form import (
     MORE,
     STEP,
@@ -37,7 +37,7 @@ from lavendersim.trace.schema import (
 )
 from lavendersim.trace.scratch import scratch
 from lavendersim.trace.sphere_contacts import Starts
-from lavendersim.trace.wire import Rows, Template, rows_behind
+from lavendersim.trace.wire import INDEX_ENTRY, Rows, Template, rows_behind
 
 STEP_OF_COLUMNS: Final = 3 * WORD  # its number, its time, how many contacts it has
 TF_ORDER: Final = (0, 1, 2, 4, 5, 6, 3)  # x y z qx qy qz qw, of x y z qw qx qy qz

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -23,6 +22,7 @@ PALETTE = ((0, 114, 178), (230, 159, 0), (0, 158, 115), (204, 121, 167), (240, 2
 STATIC_COLOUR = (170, 170, 170)
 # A viewer makes an entity of each primitive. Hulls have dozens; beyond this they are left out.
 MOST_VISUALS = 20_000
+SPECIAL: Final = frozenset("&<>\"'\n\r\t")  # in XML's attributes
 
 
 # The cells of a sweep look alike: descriptions by all that they show, the last few. Of shapes equal
@@ -44,9 +44,18 @@ def robot_description(bodies: Mapping[str, CellBody], poses: Matrix) -> str:
     return known[0]
 
 
+def _quoted(text: str) -> str:
+    """Return a text as the value of an attribute, in quotes."""
+    if SPECIAL.isdisjoint(text):
+        return f'"{text}"'
+    from xml.sax.saxutils import quoteattr  # late: it imports what speaks HTTP
+
+    return quoteattr(text)
+
+
 def _described(bodies: Mapping[str, CellBody], poses: Matrix) -> str:
     world = root_frame(list(bodies))
-    lines = ['<?xml version="1.0"?>', '<robot name="scene">', f"  <link name={quoteattr(world)}/>"]
+    lines = ['<?xml version="1.0"?>', '<robot name="scene">', f"  <link name={_quoted(world)}/>"]
     side = _plane_side(poses)
     left = MOST_VISUALS
     for index, (name, body) in enumerate(bodies.items()):
@@ -56,7 +65,7 @@ def _described(bodies: Mapping[str, CellBody], poses: Matrix) -> str:
         if len(drawn) > max(1, left):
             drawn = []
         left -= len(drawn)
-        lines += [f"  <link name={quoteattr(name)}>", *_visuals(name, drawn, colour), "  </link>"]
+        lines += [f"  <link name={_quoted(name)}>", *_visuals(name, drawn, colour), "  </link>"]
         still = immovable and not body.kinematic
         lines += _joint(world, name, "fixed" if still else "floating")
     return "\n".join([*lines, "</robot>", ""])
@@ -69,21 +78,21 @@ def _plane_side(poses: Matrix) -> float:
 
 def _joint(parent: str, child: str, kind: str) -> list[str]:
     return [
-        f'  <joint name={quoteattr(parent + " to " + child)} type="{kind}">',
-        f"    <parent link={quoteattr(parent)}/><child link={quoteattr(child)}/>",
+        f'  <joint name={_quoted(parent + " to " + child)} type="{kind}">',
+        f"    <parent link={_quoted(parent)}/><child link={_quoted(child)}/>",
         "  </joint>",
     ]
 
 
 def _visuals(name: str, drawn: Sequence[Visual], colour: tuple[int, int, int]) -> list[str]:
-    rgba = quoteattr(" ".join(f"{channel / 255:.3f}" for channel in colour) + " 1")
+    rgba = _quoted(" ".join(f"{channel / 255:.3f}" for channel in colour) + " 1")
     lines = []
     for number, visual in enumerate(drawn, start=1):
         # the visual's name becomes part of the viewer's entity path
-        called = quoteattr(name if len(drawn) == 1 else f"{name} {number}")
+        called = _quoted(name if len(drawn) == 1 else f"{name} {number}")
         lines += [
             f"    <visual name={called}>{visual.origin}<geometry>{visual.geometry}</geometry>",
-            f"      <material name={quoteattr(name)}><color rgba={rgba}/></material>",
+            f"      <material name={_quoted(name)}><color rgba={rgba}/></material>",
             "    </visual>",
         ]
     return lines

@@ -24,6 +24,8 @@ Rows = NDArray[Any]
 
 VARINT_WIDTH = 5  # bytes of a padded varint: 35 bits, enough for 1,000 years of seconds
 NANOSECONDS = 1_000_000_000
+# one entry of a MessageIndex
+INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
 
 # protobuf wire types
 VARINT, FIXED64, LENGTH = 0, 1, 2

@@ -243,7 +243,9 @@ class TraceWriter:
             self._topics -= {"/velocities"}
         self._form = form = form_of(tuple(self._bodies), columns, frozenset(self._topics))
         if "/robot_description" in self._topics:
-            self._describe_geometry(block.pose[0, :, : layout.POSE].astype(np.float64))
+            poses = block.pose[0, :, : layout.POSE].astype(np.float64)
+            # Of a run in one block more follows at once.
+            self._describe_geometry(poses, flush=block.step["step"][-1] < self._config.steps)
         for registered in form.streams:
             self._container.register(registered)
         self._encoders = encoders_of_cell(form.encoders, self._config)
@@ -252,10 +254,11 @@ class TraceWriter:
         ):
             self._open[name] = _Stream(encoder, registered.data)
 
-    def _describe_geometry(self, poses: NDArray[np.float64]) -> None:
+    def _describe_geometry(self, poses: NDArray[np.float64], flush: bool) -> None:
         """Write the chunk of /robot_description; poses: of the initial state (bodies, 7)."""
+        chunk = description_chunk(robot_description(self._bodies, poses))
         self._container.register(description_records())
-        self._container.write_chunk(description_chunk(robot_description(self._bodies, poses)))
+        self._container.write_chunk(chunk, flush)
 
     def _close(self, *names: str) -> None:
         """Hand open chunks over, to be compressed and written beside.

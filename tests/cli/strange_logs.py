@@ -32,11 +32,11 @@ from lavendersim.runner.run_directory import CELLS, SEALED
 from lavendersim.runner.run_index import as_row
 from lavendersim.runner.run_seal import DONE, seal_of
 from lavendersim.trace import layout
-from lavendersim.trace.container import INDEX_ENTRY, Closed, Container, Messages, Registered
+from lavendersim.trace.container import Closed, Container, Messages, Registered
 from lavendersim.trace.decode import body_of, message_class
 from lavendersim.trace.index import message_indexes, open_chunk, parse, read_at, read_summary
 from lavendersim.trace.source import LogFile
-from lavendersim.trace.wire import Template
+from lavendersim.trace.wire import INDEX_ENTRY, Template
 from lavendersim.trace.writer import DESCRIPTION, ENDING, RESOLVED, TIMESTEP_CHANGES
 
 MEMORY = 7 * 1024**3 // 2  # [byte] of addresses; libraries and their threads take up to 3.2 GB

@@ -18,6 +18,7 @@ from pydantic import BaseModel, ValidationError
 from lavendersim.engine.effects import JOINTS
 from lavendersim.experiment.checks.messages import report_errors
 from lavendersim.experiment.models.experiment import CellSource
+from lavendersim.experiment.models.scene import Scene
 from lavendersim.experiment.models.shapes import SOLIDS
 from lavendersim.experiment.models.tree import ARRANGEMENTS, BODIES, bodies_of, swept_values
 from lavendersim.experiment.text.node import ABSENT, Mark, Node, Path
@@ -71,6 +72,7 @@ class Reading:
         if only is not None:
             kept = ((key, _known.get(node)) for key, node in self._alone() if key in only)
             data |= {key: section for key, section in kept if section is not None}
+        Scene.model_rebuild()  # done once, for files and cells: else each makes it of its own
         try:
             return model.model_validate(data, context=self)
         except ValidationError as error:

@@ -56,6 +56,22 @@ def test_a_kernel_on_disk_is_known_among_others_whatever_its_arguments(store: Pa
     assert kernel_store.kernels_on_disk() == set()
 
 
+def test_the_directory_is_listed_again_where_it_has_changed(
+    store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    listed: list[Path] = []
+    names = os.listdir
+    monkeypatch.setattr(os, "listdir", lambda path: listed.append(path) or names(path))
+    long_ago = 1_000_000_000
+    os.utime(store, (long_ago, long_ago))
+    assert [kernel_store.kernels_on_disk() for _ in range(2)] == [set(), set()]
+    assert len(listed) == 1
+    (store / "plan-build-kernel-key.kernel").touch()
+    # A second one may follow within one tick of the clock.
+    assert [kernel_store.kernels_on_disk() for _ in range(2)] == [{"plan-build-kernel"}] * 2
+    assert len(listed) == 3
+
+
 def test_the_kernel_not_used_for_longest_makes_room(
     store: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

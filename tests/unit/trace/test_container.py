@@ -14,7 +14,6 @@ from mcap.records import Channel, DataEnd, Message, Schema
 
 from lavendersim.trace.container import (
     CRC_KEY,
-    INDEX_ENTRY,
     Closed,
     Container,
     Messages,
@@ -24,6 +23,7 @@ from lavendersim.trace.container import (
 )
 from lavendersim.trace.record_bytes import to_bytes
 from lavendersim.trace.whole import LogDigest
+from lavendersim.trace.wire import INDEX_ENTRY
 
 RECORDS = Registered.of([Schema(1, b"x", "text", "Text")], [Channel(1, "/a", "text", {}, 1), Channel(2, "/b", "text", {}, 1)])  # noqa: E501  # fmt: skip
 

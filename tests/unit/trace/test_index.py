@@ -14,7 +14,7 @@ from logs_of_samples import Logged, logged
 from mcap.records import Attachment, Channel, Chunk, Metadata, Schema
 
 from lavendersim.errors import TraceError
-from lavendersim.trace.container import INDEX_ENTRY, Messages, message_index, metadata_crc
+from lavendersim.trace.container import Messages, message_index, metadata_crc
 from lavendersim.trace.index import (
     MOST_DESCRIPTIONS,
     damage,
@@ -30,6 +30,7 @@ from lavendersim.trace.index import (
 )
 from lavendersim.trace.record_bytes import to_bytes
 from lavendersim.trace.whole import LogDigest
+from lavendersim.trace.wire import INDEX_ENTRY
 
 CHANNEL = Channel(3, "/a", "cdr", {"x": "of it [m]"}, 1)
 ATTACHMENT = Attachment(0, 0, "config.yaml", "application/yaml", b"question: ?")

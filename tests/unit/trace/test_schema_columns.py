@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from google.protobuf.descriptor_pb2 import FieldDescriptorProto as Field
 
 from lavendersim.trace.schema import (
     CONTACT_COLUMNS,
@@ -14,6 +15,11 @@ from lavendersim.trace.schema import (
     WORDS,
     columns_of,
 )
+
+
+def test_kinds_have_the_numbers_that_protobuf_gives_them() -> None:
+    kinds = {"f8": Field.TYPE_DOUBLE, "i8": Field.TYPE_SFIXED64, "u8": Field.TYPE_FIXED64}
+    assert kinds == WORDS
 
 
 @pytest.mark.parametrize("columns", [STEP_COLUMNS, RESIDUAL_COLUMNS])

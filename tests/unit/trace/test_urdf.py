@@ -5,6 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from lavendersim.trace.urdf import PLANE_THICKNESS, robot_description
@@ -29,6 +30,15 @@ def test_a_planes_box_has_its_top_face_in_the_plane() -> None:
         # a dozen roundings of numbers of order one
         assert np.allclose(body @ local @ [0, 0, 1], slope["normal"], atol=1e-14)
         assert abs(np.dot(slope["normal"], top) - slope["offset"]) < 1e-14
+
+
+@pytest.mark.parametrize("special", list("&<>\"'\n\r\t"))
+def test_a_name_comes_back_as_it_is(special: str) -> None:
+    name = f"a{special}b"
+    poses = np.array([[0.0, 0, 0, 1, 0, 0, 0]])
+    shape = {"kind": "sphere", "radius": 1.0}
+    robot = ET.fromstring(robot_description({name: made_body(shape)}, poses))
+    assert name in {link.attrib["name"] for link in robot.iter("link")}
 
 
 def _turn(w: float, u: Vector, v: Vector) -> Vector:
