@@ -90,13 +90,14 @@ def make_first_stop(spec: Spec) -> Any:
     from ..approach import NEVER, SHORT, make_slowest, normal, relative_velocity
     from ..block import set_tangents
     from ..records import PLANE
-    from ..row_terms import row_terms
+    from ..row_terms import make_is_soft, row_terms
     from ..vectors import Vec3, cross, dot, minus, plus, plus_scaled, position
     from . import made_once
 
     slowest, vanishes = make_slowest(spec), make_vanishes(spec)
     terms = row_terms(spec)
-    rolling, torsional = terms.rolling, terms.torsional
+    rolling, torsional, yielding = terms.rolling, terms.torsional, terms.yielding
+    is_soft = make_is_soft(spec)
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
 
     def across(n, v):
@@ -167,7 +168,11 @@ def make_first_stop(spec: Spec) -> Any:
             # What nears or leaves is not pressed as the part begins: no friction of it can change.
             if abs(contact.rate) > least:
                 continue
-            if pair.friction > 0.0:
+            slides = pair.friction > 0.0
+            if yielding:
+                if pair.tangential_stiffness > 0.0 and is_soft(pair):  # it gives way, without a jump
+                    slides = False
+            if slides:
                 s = slip(contact, bodies, motion)
                 if dot(s, s) > least * least:
                     rate = slip_rate(contact, bodies)
