@@ -170,7 +170,9 @@ def make_first_stop(spec: Spec) -> Any:
                 continue
             slides = pair.friction > 0.0
             if yielding:
-                if pair.tangential_stiffness > 0.0 and is_soft(pair):  # it gives way, without a jump
+                if pair.tangential_stiffness > 0.0 and is_soft(
+                    pair
+                ):  # it gives way, without a jump
                     slides = False
             if slides:
                 s = slip(contact, bodies, motion)

@@ -4,7 +4,7 @@
 s is the stretch, the way along the surface that no slip has taken; k_n the stiffness along the
 normal, 1/c of a compliance, of Hertz's contact that of its depth, 3/2 k sqrt(d). kappa is the
 pair's `tangential_stiffness`: of balls of one material 2 (1 - nu)/(2 - nu), k_t = 8 G* a, a the
-radius of the area of contact (Mindlin 1949; cited as background, not opened). What is held swings
+radius of the area of contact (Mindlin 1949; cited as background, not opened). What sticks swings
 with sqrt(k_t/m), m = 1/(1/m_A + 1/m_B + ...) along the surface, and slips once it is stretched by
 mu F_n/k_t; a superball turns its slip round by it.
 
@@ -44,20 +44,16 @@ def decide(facts: Facts) -> Decision:
 
 def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
     """Yield what is specified in vain, numerics without springs, and laws of a slip of their own."""
-    surfaces = {
-        name: (body.surface, *getattr(body.surface, "partners", ()))
-        for name, body in config.scene.bodies.items()
-    }
-    yielding = [
-        name
-        for name, own in surfaces.items()
-        if any((one.tangential_stiffness or 0.0) > 0.0 for one in own)
+    surfaces = [
+        (name, one)
+        for name, surface in _surfaces(config)
+        for one in (surface, *getattr(surface, "partners", ()))
     ]
+    yielding = [name for name, one in surfaces if (one.tangential_stiffness or 0.0) > 0.0]
     if not yielding:
         return
     place = ("scene", "bodies", yielding[0], "surface", "tangential_stiffness")
-    every = [one for own in surfaces.values() for one in own]
-    if not any((one.compliance or 0.0) > 0.0 or (one.hertz_stiffness or 0.0) > 0.0 for one in every):
+    if not any((one.compliance or one.hertz_stiffness or 0.0) > 0.0 for _, one in surfaces):
         yield place, "it is by the stiffness along the normal, and all are rigid; expected 0"
     numerics = config.numerics
     if numerics.compliance_law != "spring":
@@ -65,17 +61,29 @@ def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
     if numerics.stabilisation_gain > 0.0:
         yield place, "stabilisation_gain pushes in place of springs; expected 0, or no gain"
     if not numerics.warm_start:
-        yield place, "its stretch is kept with the impulses of warm_start; expected 0, or true there"
+        yield (
+            place,
+            "its stretch is kept with the impulses of warm_start; expected 0, or true there",
+        )
     if config.scene.springs:
         yield place, "springs are judged by an energy without its own; expected 0 beside them"
-    for name, own in surfaces.items():
-        if any((one.static_friction or 0.0) > 0.0 for one in own):
+    for name, one in surfaces:
+        if (one.static_friction or 0.0) > 0.0:
             at = ("scene", "bodies", name, "surface", "static_friction")
             yield at, f"{yielding[0]} gives way along its surface, which is no slip; expected 0"
     for name, body in config.scene.bodies.items():
         if any(body.grain):
             why = f"{yielding[0]} gives way alike in all directions of its surface"
             yield ("scene", "bodies", name, "grain"), f"{why}; expected no grain"
+
+
+def _surfaces(config: Any) -> Iterator[tuple[str, Any]]:
+    # Of bodies, by their names, and what events give them.
+    for name, body in config.scene.bodies.items():
+        yield name, body.surface
+    for event in config.planned_events:
+        if getattr(event, "surface", None) is not None:
+            yield event.body, event.surface
 
 
 def make_recall(spec: Spec) -> Kernel:

@@ -130,7 +130,7 @@ def test_what_is_held_swings_with_its_stiffness_along_the_surface(ran: dict[str,
 
 
 def test_what_is_pulled_gives_way_by_the_force_over_the_stiffness(ran: dict[str, States]) -> None:
-    """From rest it swings about F/k_t, as it rolls; each step ends at F/k_t (1 - cos of its phase)."""
+    """From rest it swings about F/k_t, as it rolls, by F/k_t (1 - cos of its phase)."""
     states = ran["hold"]
     turn = 2.0 * math.atan(math.sqrt(3.5 * K_T / MASS) / SWING / 2.0)
     phases = turn * np.arange(1, len(states.time))
@@ -167,9 +167,7 @@ def test_a_superball_has_its_slip_turned_round(ran: dict[str, States]) -> None:
 def test_what_slips_throughout_is_slowed_by_the_force_of_the_spring(ran: dict[str, States]) -> None:
     slip, mu, kappa = GROSS
     assert kappa * slip / (mu * SPEED) > max(1.0, 7.0 * kappa - 1.0)
-    errors = [
-        abs(slips(ran[f"gross {rate}"])[-1, 0] - (slip - 7.0 * mu * SPEED)) for rate in RATES
-    ]
+    errors = [abs(slips(ran[f"gross {rate}"])[-1, 0] - (slip - 7.0 * mu * SPEED)) for rate in RATES]
     assert min(orders(errors)) > 1.7
     assert errors[-1] < 1e-6
 
