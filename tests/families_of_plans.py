@@ -137,7 +137,7 @@ FAMILIES = (
         ),
         effects=(
             *("anisotropic_friction", "contact_patch", "joint", "joint_stop", "motor"),
-            *("tangential_restitution", "velocity_log"),
+            *("tangential_compliance", "tangential_restitution", "velocity_log"),
         ),
     ),
     Family(

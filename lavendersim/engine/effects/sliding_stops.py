@@ -97,7 +97,7 @@ def make_first_stop(spec: Spec) -> Any:
     slowest, vanishes = make_slowest(spec), make_vanishes(spec)
     terms = row_terms(spec)
     rolling, torsional, yielding = terms.rolling, terms.torsional, terms.yielding
-    is_soft = make_is_soft(spec)
+    is_soft: Any = make_is_soft(spec) if yielding else None
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
 
     def across(n, v):

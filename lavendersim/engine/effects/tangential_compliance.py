@@ -43,7 +43,7 @@ def decide(facts: Facts) -> Decision:
 
 
 def excludes(config: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Yield what is specified in vain, numerics without springs, and laws of a slip of their own."""
+    """Yield what is specified in vain, numerics without springs, laws of another slip."""
     surfaces = [
         (name, one)
         for name, surface in _surfaces(config)
