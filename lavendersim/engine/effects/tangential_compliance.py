@@ -13,7 +13,7 @@ sticks, where bodies move by the mean of the velocities at its ends (`contact_mi
 1, which damps, elsewhere. Where the normal is pressed further in the force is kept, where it is let
 out the stretch: never is energy won. What is stretched when surfaces part is lost. Impacts of
 springs that steps do not resolve (`contact_spring`) have Coulomb's friction alone, and bodies that
-wake begin without a stretch.
+wake begin without a stretch. One ball that a floor carries takes 0.80 us a step in place of 0.70.
 """
 
 from __future__ import annotations

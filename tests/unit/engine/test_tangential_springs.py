@@ -132,8 +132,9 @@ def test_a_stretch_ends_no_longer_than_friction_holds() -> None:
 
 @pytest.mark.parametrize("spec", [EULER, MEAN], ids=["euler", "mean"])
 def test_a_stretch_turns_about_the_normal_with_the_mean_of_both_spins(spec: Spec) -> None:
-    (row,) = kept(spec, contacts(spec, lambda_n=1.0, lambda_1=-0.1), (30.0, 10.0))
-    turn = 2.0 * math.atan(0.5 * 20.0 * DT)
+    pushed = contacts(spec, lambda_n=1.0, lambda_1=-0.06, lambda_2=-0.08)
+    (row,) = kept(spec, pushed, (30.0, 10.0))
+    turn = math.atan2(0.08, 0.06) + 2.0 * math.atan(0.5 * 20.0 * DT)
     found = math.atan2(row["stretch_y"], row["stretch_x"])
     assert found == pytest.approx(turn, rel=1e-13)
 
