@@ -125,6 +125,7 @@ FAMILIES = (
     Family(texts=(scenes.JOINTED_APART,)),
     Family(("effects/rope", "effects/spring", "hard/contact/soft_to_stiff"), effects=("drag",)),
     Family(("effects/falling_restitution", "effects/cohesion")),
+    Family(("effects/hertz_contact", "effects/tangential_compliance"), shape_pairs=BALLS),
     Family(("scenes/oblique_impact", "hard/friction/rolling_resistance")),
     Family(("cost/residual_by_sweep", "hard/timestep/changes_during_the_run")),
     Family(("time/cradle_with_gaps", "time/near_miss")),
@@ -136,7 +137,7 @@ FAMILIES = (
         ),
         effects=(
             *("anisotropic_friction", "contact_patch", "joint", "joint_stop", "motor"),
-            *("tangential_restitution", "velocity_log"),
+            *("tangential_compliance", "tangential_restitution", "velocity_log"),
         ),
     ),
     Family(

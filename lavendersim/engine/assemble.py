@@ -47,6 +47,11 @@ def step_problem(spec: Spec, contacts: np.ndarray, velocities: np.ndarray) -> St
     sides = [_side(spec, contacts, velocities, frames, body) for body in "ab"]
     begin, row, blocks = _delassus(sides, frames)
     frictional = _frictional(spec, contacts)
+    if terms.yielding:  # of the contact itself, as gamma is of its normal
+        own = row == np.repeat(np.arange(len(contacts)), np.diff(begin))
+        at = np.flatnonzero(own)
+        for axis in (1, 2):
+            blocks[at, axis, axis] += contacts["gamma_t"][row[at]]
     free = np.zeros((len(contacts), 3))
     for side in sides:
         linear, angular = _velocity_of(velocities, side.body)

@@ -144,11 +144,12 @@ def make_relative_velocity(spec: Spec):
 def make_slip_velocity(spec: Spec):
     """Return `kernel(contact, va, vb) -> (v_n, v_1, v_2)`, along its axes [m/s].
 
-    With the velocities that surfaces have in their bodies.
+    With the velocities that surfaces have in their bodies; what gives way along its surface by the
+    contact's impulse is no slip.
     """
     if not row_terms(spec).frictional:
         return None
-    shifted = row_terms(spec).shifted
+    shifted, yielding = row_terms(spec).shifted, row_terms(spec).yielding
     relative_velocity = make_relative_velocity(spec)
 
     def slip_velocity(contact, va, vb):
@@ -159,6 +160,9 @@ def make_slip_velocity(spec: Spec):
         if shifted:
             v_1 += contact.surface_1
             v_2 += contact.surface_2
+        if yielding:
+            v_1 += contact.gamma_t * contact.lambda_1
+            v_2 += contact.gamma_t * contact.lambda_2
         return v_n, v_1, v_2
 
     return kernel(slip_velocity, spec)

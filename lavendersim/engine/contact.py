@@ -297,6 +297,7 @@ def make_append_contact(spec: Spec, capture):
     slows = at_surface and has_hook(spec, "slowed_n")
     slowed_n: Any = made_once(spec, "slowed_n")[1] if slows else None
     ropes, bilateral, bounded = row_terms(spec).taut, terms.bilateral, terms.bounded
+    yields, yield_row = made_once(spec, "yield_row")
     stirred: Any = make_stirred(spec) if ropes else None
 
     def append_contact(contact, bodies, velocities, motion, pair, params):
@@ -360,5 +361,9 @@ def make_append_contact(spec: Spec, capture):
         if compliant:
             softened += contact.gamma
         contact.inv_k = 1.0 / softened
+        if yields:
+            contact.gamma_t, contact.yield_k = 0.0, 0.0
+            if frictional:
+                yield_row(contact, pair, motion[contact.a], motion[contact.b], params)
 
     return kernel(append_contact, spec)

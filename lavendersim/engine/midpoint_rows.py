@@ -120,6 +120,7 @@ def make_lasting(spec: Spec) -> Any:
     springs, spring_row = made_once(spec, "spring_row")
     ropes, bilateral = row_terms(spec).taut, row_terms(spec).bilateral
     inside, is_inside = make_is_inside(spec)
+    yielding = row_terms(spec).yielding
     turns, normal_velocity = step_terms(spec).turns, make_normal_velocity(spec)
 
     def is_twisted(v, m):
@@ -157,6 +158,9 @@ def make_lasting(spec: Spec) -> Any:
                 contact.lasts, contact.torn = 1, -1
         if friction:
             contact.slides = 0
+            if yielding:
+                if contact.yield_k > 0.0:  # its row has the sum of both ends' slips
+                    contact.slides = 2
 
     return kernel(lasting, spec)
 
@@ -171,6 +175,7 @@ def make_begin_slip(spec: Spec) -> Any:
     if not row_terms(spec).frictional:
         return None
     relative_velocity, stretched = make_relative_velocity(spec), row_terms(spec).stretched
+    yielding = row_terms(spec).yielding
 
     def work_on_slip(contact):
         x, y, z = contact.begin_x, contact.begin_y, contact.begin_z
@@ -197,7 +202,12 @@ def make_begin_slip(spec: Spec) -> Any:
             contact.begin_x, contact.begin_y, contact.begin_z = x, y, z
             slip, change = sqrt(x * x + y * y + z * z), sqrt(dx * dx + dy * dy + dz * dz)
             contact.slides = 1 if slip > SLIDES * change else 0
-            if contact.slides == 0:
+            yields = False
+            if yielding:
+                yields = contact.yield_k > 0.0
+            if yields:  # its row is of the mean slip
+                contact.slides = 2
+            elif contact.slides == 0:
                 work += work_on_slip(contact)
             elif contact.lambda_n > 0.0:
                 across_x, across_y = y * dz - z * dy, z * dx - x * dz
@@ -301,6 +311,7 @@ def make_shift(spec: Spec) -> Any:
     terms = row_terms(spec)
     friction, frictionless = terms.frictional, terms.frictionless
     springs, spring_row = made_once(spec, "spring_row")
+    yielding = terms.yielding
     swept, ropes = row_terms(spec).swept, row_terms(spec).taut
     bilateral, bounded = terms.bilateral, terms.bounded
     joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
@@ -375,10 +386,19 @@ def make_shift(spec: Spec) -> Any:
         else:
             contact.target += b
         if friction:
-            frictional = True
+            frictional, yields = True, False
             if frictionless:
                 frictional = contact.frictional == 1
-            if frictional:
+            if yielding:
+                yields = contact.yield_k > 0.0
+            if yields:  # its row has the slip of the start but for how uneven bodies turn
+                x, y, z = relative_velocity(contact, la, lb)
+                s = relative_velocity(contact, motion[contact.a], motion[contact.b])
+                x, y, z = x - s[0], y - s[1], z - s[2]
+                contact.surface_1 += contact.t1x * x + contact.t1y * y + contact.t1z * z
+                contact.surface_2 += contact.t2x * x + contact.t2y * y + contact.t2z * z
+                contact.slides = 2
+            elif frictional:
                 x, y, z = relative_velocity(contact, la, lb)
                 sx, sy, sz = contact.begin_x, contact.begin_y, contact.begin_z
                 one = contact.t1x * x + contact.t1y * y + contact.t1z * z + contact.surface_1

@@ -70,6 +70,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     reverses = reverses and predicts  # idle where no law of impacts is beside it
     warms, match_contacts = made_once(spec, "match")
     _, store_contacts = made_once(spec, "store")
+    yields, recall_stretch = made_once(spec, "recall_stretch")
+    _, keep_stretch = made_once(spec, "keep_stretch")
     apply_start: Any = make_apply_start(spec) if warms else None
     acts = make_acts(spec)
     watched, note = made_once(spec, "note_slip")
@@ -109,6 +111,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             lasts = params.dt > INSTANT
         contacts, cache, pairs = state.contacts, state.cache, state.pairs
         order = workspace.ordering.order
+        if yields:
+            recall_stretch(contacts, count, bodies, cache, counters, params)
         predicted = predicts
         if ordered:
             # Motion between impacts has none, unless they are left without order.
@@ -231,6 +235,8 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                         if midway:
                             stand_up(bodies, poses)
                     return cut
+        if yields and lasts:
+            keep_stretch(contacts, count, velocities, motion, params)
         if stores and lasts:
             counters.contact_energy = contact_energy(contacts, count, velocities, params)
         if logs:

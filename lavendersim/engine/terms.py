@@ -32,6 +32,7 @@ class RowTerms:
     taut: bool = False  # some of a normal are ropes: `span` is above 0 [m]
     elastic: bool = False  # some push as springs, `spring_compliance`, never at an instant
     curved: bool = False  # some of those by Hertz's law, `hertz_stiffness`: `contact_spring_law`
+    yielding: bool = False  # some give way along their surface: gamma_t lambda_t adds to the slip
     swept: bool = False  # some are of where fast bodies meet: `tangential_x`, y, z [m]
 
 

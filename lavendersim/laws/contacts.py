@@ -37,7 +37,7 @@ _GEOMETRY = {
 }
 # Impulses of these are in no pose and no velocity, or they have no round cone of three numbers.
 _UNKNOWN = (
-    *("anisotropic_friction", "contact_patch", "tangential_restitution"),
+    *("anisotropic_friction", "contact_patch", "tangential_compliance", "tangential_restitution"),
     *("cohesion", "drag", "joint", "rolling_friction", "rope", "spring"),
     *("torsional_friction", "varying_force"),
 )

@@ -13,7 +13,7 @@ OTHER_LAWS = {
     *("midpoint", "contact_midpoint", "contact_spring", "impact_time", "impact_order"),
     *(
         "speculative",
-        "hertz_contact",
+        *("hertz_contact", "tangential_compliance"),
         "newton",
         "least_norm",
         "fast_bodies",

@@ -133,7 +133,10 @@ def as_it_is() -> list[str]:
 
 @pytest.mark.parametrize(
     ("effects", "elsewhere"),
-    [(("drag",), False), (("hertz_contact", "contact_spring", "compliance"), True)],
+    [
+        (("drag",), False),
+        (("tangential_compliance", "hertz_contact", "contact_spring", "compliance"), True),
+    ],
     ids=["drag", "compliance"],
 )
 def test_a_pruned_effect_leaves_no_instruction(

@@ -45,7 +45,10 @@ INLINED_DIFFERENTLY = {
 }
 # Without a pair that may touch there is nothing to compile. Code may be looked at where the effect
 # would be another law.
-TOUCHING = {"impact_time": "balls", "speculative": "balls", "contact_spring": "balls"}
+TOUCHING = {
+    **{"impact_time": "balls", "speculative": "balls", "contact_spring": "balls"},
+    "tangential_compliance": "balls",
+}
 # Effects that call the kernel.
 CALLED_BY = {"pose_log": ("step_log",)}
 # A law at contacts, one at impacts and one at the end of a step: some 5 s each to compile. A force

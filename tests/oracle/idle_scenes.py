@@ -213,6 +213,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "compliance": ("balls", "conjugate balls"),
     "contact_spring": ("flying brick",),
     "hertz_contact": ("flying brick",),
+    "tangential_compliance": ("flying brick",),
     "warm_start": ("cold balls",),
     "newton": ("single ball",),
     "supernodes": ("adaptive balls",),

@@ -26,7 +26,7 @@ from tests.made_cells import NUMERICS
 OTHER_LAWS = {
     *("broad_phase", "capture_in_sweeps", "fast_bodies", "impact_energy", "impact_time"),
     *("contact_midpoint", "contact_spring", "error_control", "hertz_contact", "impact_order"),
-    *("midpoint", "newton", "supernodes"),
+    *("midpoint", "newton", "supernodes", "tangential_compliance"),
     *("least_norm", "overlooked_points", "pairwise_impacts", "sleeping", "sliding_stops"),
     *("joint", "joint_stop", "motor"),  # rows without a cone, beside which none are packed
     "speculative",

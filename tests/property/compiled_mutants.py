@@ -35,6 +35,8 @@ OF_FILES = {
     ),
     "effects/*": ("tests/unit/engine/effects", "tests/physics/test_undetermined_forces.py"),
     "effects/hertz*": ("tests/physics/test_hertz_contacts.py",),
+    "effects/tangential_c*": ("tests/physics/test_springs_along_surfaces.py",),
+    "tangential_springs.py": ("tests/physics/test_springs_along_surfaces.py",),
     "effects/*spring*": ("tests/physics/test_contact_springs.py",),
     "effects/impact*": ("tests/physics/test_pairwise_impacts.py",),
     "effects/sleeping.py": ("tests/physics/test_sleeping_configs.py",),

@@ -20,6 +20,7 @@ from fuzz_draws import Draw
 from fuzz_drives import events, forces, motion, paired, springs
 from fuzz_grounds import ground
 from fuzz_joints import connections
+from fuzz_yielding import give_way
 
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.effects import EFFECTS
@@ -353,9 +354,11 @@ def config_of(seed: str, plan: Drawn) -> dict[str, Any]:
     apart = joined and numerics["integrator"] != "midpoint_contact"  # refused beside each other
     scene["springs"] = [] if apart else springs(pen, bodies, movable)
     times = {"timestep": numerics["timestep"], "duration": pen.duration}
+    happens = [] if pen.calm else events(pen, bodies, movable, scene, times)
+    give_way(pen.beside(f"{seed} along"), numerics, scene, happens)
     return {
         "scene": scene,
-        "events": [] if pen.calm else events(pen, bodies, movable, scene, times),
+        "events": happens,
         "numerics": numerics | ({"sleeping": False} if joined else {}),
         "duration": pen.duration,
         "record": {

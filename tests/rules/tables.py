@@ -32,6 +32,7 @@ SECTIONS = {
         *("stabilisation", "compliance", "restitution", "surface_velocity", "capture_in_sweeps"),
         *("cohesion", "contact_spring", "hertz_contact", "static_friction", "falling_restitution"),
         *("anisotropic_friction", "contact_patch", "tangential_restitution"),
+        "tangential_compliance",
     ),
     "impacts-at-the-surface": ("impact_time", "impact_energy"),
     "impacts-in-order": ("impact_order", "pairwise_impacts", "sliding_stops", "overlooked_points"),

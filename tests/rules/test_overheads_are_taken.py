@@ -36,6 +36,7 @@ AT_WORK = {
         *("gravity", "friction", "warm_start", "projection", "step_log", "contact_log"),
     ),
     "effects/static_friction.yaml": ("gyroscopic", "static_friction"),
+    "effects/tangential_compliance.yaml": ("tangential_compliance",),
     "effects/tangential_restitution.yaml": ("tangential_restitution",),
     "effects/varying_force.yaml": ("varying_force",),
 }

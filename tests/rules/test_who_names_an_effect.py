@@ -43,9 +43,11 @@ ELSEWHERE = {
         "engine/effects/impact_energy.py": "its impacts give back, too",
         "engine/effects/contact_spring.py": "is another law of it",
         "engine/effects/hertz_contact.py": "no compliance may be beside it",
+        "engine/effects/tangential_compliance.py": "is in vain where all is rigid",
     },
     "contact_spring": {
         "engine/effects/hertz_contact.py": "is another law of it",
+        "engine/effects/tangential_compliance.py": "needs it: it is by its stiffness",
     },
     "restitution": {
         "engine/effects/capture_in_sweeps.py": "makes a mistake with it",

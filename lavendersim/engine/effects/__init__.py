@@ -64,6 +64,7 @@ NAMES: Final = (
     "compliance",
     "contact_spring",
     "hertz_contact",
+    "tangential_compliance",
     "warm_start",
     "newton",
     "supernodes",

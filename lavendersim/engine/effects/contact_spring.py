@@ -99,9 +99,11 @@ def make_energy(spec):
     """
     from ..contact import make_normal_velocity
     from ..contact_spring_law import make_stored
+    from ..row_terms import row_terms
+    from ..tangential_springs import stretch_energy
 
     stored, normal_velocity = make_stored(spec), make_normal_velocity(spec)
-    mean = step_terms(spec).centred
+    mean, yielding = step_terms(spec).centred, row_terms(spec).yielding
 
     def spring_energy(contacts, count, velocities, params):
         total = 0.0
@@ -119,6 +121,12 @@ def make_energy(spec):
                 if energy > 0.0:
                     speed = sqrt(2.0 * energy * contact.k_n)
                     speed = min(speed, STEEPEST * energy / depth * contact.k_n * params.timestep)
+                    a, b = velocities[contact.a], velocities[contact.b]
+                    a.released, b.released = max(a.released, speed), max(b.released, speed)
+                if yielding:
+                    along = stretch_energy(contact)
+                    total += along
+                    speed = sqrt(2.0 * along * contact.k_n)
                     a, b = velocities[contact.a], velocities[contact.b]
                     a.released, b.released = max(a.released, speed), max(b.released, speed)
         return total

@@ -112,6 +112,9 @@ class Hooks:
     wake: Maker | None = None  # (bodies, contacts, count, params) -> whether a body woke
     mark_middle: Maker | None = None  # (contacts, first, last, pair, found), of a manifold
     stretch_tangents: Maker | None = None  # (contact, body_a, body_b, pair): units of its tangents
+    recall_stretch: Maker | None = None  # (contacts, count, bodies, cache, counters, params)
+    yield_row: Maker | None = None  # (contact, pair, ma, mb, params), of a completed row
+    keep_stretch: Maker | None = None  # (contacts, count, velocities, motion, params), once solved
     surface_velocity: Maker | None = None  # (contact, body_a, body_b), once its tangents are set
     complete_torsion: Maker | None = None  # (contact, pair, x, y, z): response to a unit psi_n
     complete_rolling: Maker | None = None  # (contact, pair, k_11, k_12, k_22)

@@ -80,6 +80,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     some_frictionless = row_terms(spec).frictionless
     forget_history = make_forget_history(spec)
     bilateral, reverses = row_terms(spec).bilateral, has_hook(spec, "reverse_slip")
+    yielding = row_terms(spec).yielding
 
     def work_of(contacts, count, velocities, motion, params):
         # Of all impulses, at each body's time of impact: before and after it forces work alone.
@@ -107,6 +108,9 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
                 along = contact.lambda_n * (0.5 * (contact.v_n_pre + v) - after_n)
                 across = contact.lambda_1 * (0.5 * (contact.pre_1 + v_1) - after_1)
                 across += contact.lambda_2 * (0.5 * (contact.pre_2 + v_2) - after_2)
+                if yielding:
+                    if contact.yield_k > 0.0:  # a spring, which gives what it stored
+                        across = 0.0
                 total += along + across
                 size += abs(along) + abs(across)
         return total, size

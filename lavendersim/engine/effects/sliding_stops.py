@@ -91,13 +91,14 @@ def make_first_stop(spec: Spec) -> Any:
     from ..block import set_tangents
     from ..collide.nearest_image import place_beside
     from ..records import PLANE
-    from ..row_terms import row_terms
+    from ..row_terms import make_is_soft, row_terms
     from ..vectors import Vec3, cross, dot, minus, plus, plus_scaled, position
     from . import made_once
 
     slowest, vanishes, beside = make_slowest(spec), make_vanishes(spec), place_beside(spec)
     terms = row_terms(spec)
-    rolling, torsional = terms.rolling, terms.torsional
+    rolling, torsional, yielding = terms.rolling, terms.torsional, terms.yielding
+    is_soft: Any = make_is_soft(spec) if yielding else None
     moving_surface, surface_velocity = made_once(spec, "surface_velocity")
 
     def across(n, v):
@@ -166,7 +167,10 @@ def make_first_stop(spec: Spec) -> Any:
             if contact.waits == 1 or contact.phi > params.slop:
                 continue
             pair, s = pairs[contact.pair], Vec3(0.0, 0.0, 0.0)
-            if pair.friction > 0.0:
+            slides = pair.friction > 0.0
+            if yielding:  # what gives way has no jump
+                slides = slides and not (pair.tangential_stiffness > 0.0 and is_soft(pair))
+            if slides:
                 s = slip(contact, bodies, motion)
             if not turning:
                 if dot(s, s) <= CREEP * CREEP:

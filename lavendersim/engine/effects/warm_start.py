@@ -115,13 +115,17 @@ def make_store(spec):
 
     friction = row_terms(spec).frictional
     terms = row_terms(spec)
-    torsional, rolling = terms.torsional, terms.rolling
+    torsional, rolling, yielding = terms.torsional, terms.rolling, terms.yielding
     # Substeps are as short as an accuracy requires, one after the other.
     parted = step_terms(spec).ordered_impacts and not step_terms(spec).substeps
 
     def store_contacts(contacts, count, bodies, cache, counters, params):
         if parted:
-            if params.dt < BRIEF * params.timestep and counters.cached > 0:
+            brief = params.dt < BRIEF * params.timestep and counters.cached > 0
+            if yielding:  # no part of a stretch is too brief
+                for c in range(count):
+                    brief = brief and contacts[c].stretch_k == 0.0
+            if brief:
                 for k in range(counters.cached):
                     cache[k].claimed = 0
                 return
@@ -138,6 +142,11 @@ def make_store(spec):
                 row.px = contact.t1x * one + contact.t2x * two
                 row.py = contact.t1y * one + contact.t2y * two
                 row.pz = contact.t1z * one + contact.t2z * two
+            if yielding:
+                row.stretch_x, row.stretch_y = contact.stretch_x, contact.stretch_y
+                row.stretch_z, row.stretch_k = contact.stretch_z, contact.stretch_k
+                row.stretch_nx, row.stretch_ny = contact.stretch_nx, contact.stretch_ny
+                row.stretch_nz = contact.stretch_nz
             if torsional:
                 row.psi_n = contact.psi_n
             if rolling:

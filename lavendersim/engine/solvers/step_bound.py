@@ -28,7 +28,7 @@ def allocate(spec: Spec, bodies: int, contacts: int) -> np.ndarray:
 def make_bound(spec: Spec) -> Any:
     """Return `kernel(contacts, count, touching)` that fills `bound`; touching: (bodies,) counts."""
     terms = row_terms(spec)
-    friction, compliant = terms.frictional, terms.compliant
+    friction, compliant, yielding = terms.frictional, terms.compliant, terms.yielding
 
     def bound_by_matrix(contacts, count, touching):
         pass  # filled with the records
@@ -54,9 +54,14 @@ def make_bound(spec: Spec) -> Any:
             if friction:
                 # Gershgorin's bound of the contact's own block.
                 beside = abs(contact.k_n1) + abs(contact.k_n2)
-                stiffest = max(contact.k_n, contact.k_t) + beside
+                k_t = contact.k_t
+                if yielding:
+                    k_t -= contact.gamma_t
+                stiffest = max(contact.k_n, k_t) + beside
             contact.bound = most * stiffest
             if compliant:
                 contact.bound += contact.gamma
+            if yielding:
+                contact.bound += contact.gamma_t
 
     return kernel(bound, spec)

@@ -12,9 +12,8 @@ from lavendersim.engine.effects.decision import BodyFacts, Facts, PairFacts
 
 SURFACE = {
     **dict.fromkeys(("friction", "restitution", "compliance"), 0.0),
-    **dict.fromkeys(
-        ("torsional_friction", "rolling_friction", "tangential_restitution", "hertz_stiffness"), 0.0
-    ),
+    **dict.fromkeys(("torsional_friction", "rolling_friction", "tangential_restitution"), 0.0),
+    **dict.fromkeys(("hertz_stiffness", "tangential_stiffness"), 0.0),
 }
 
 

@@ -90,7 +90,7 @@ def update_shift(contact, slip, stalls):
 
 
 def _make_start_block(spec: Spec):
-    shifted = row_terms(spec).shifted
+    shifted, yielding = row_terms(spec).shifted, row_terms(spec).yielding
     relative_velocity = make_relative_velocity(spec)
 
     def start_block(contact, va, vb, softness, at_rest, stalls):
@@ -101,6 +101,11 @@ def _make_start_block(spec: Spec):
         if shifted:
             contact.velocity_1 += contact.surface_1
             contact.velocity_2 += contact.surface_2
+        contact.stiff_t = 1.0 / (softness * contact.k_t)
+        if yielding:  # s lambda^k - e w is lambda^k - e (w + gamma lambda^k)
+            contact.velocity_1 += contact.gamma_t * contact.lambda_1
+            contact.velocity_2 += contact.gamma_t * contact.lambda_2
+            contact.stiff_t = 1.0 / (softness * contact.k_t + contact.gamma_t)
         if at_rest:
             contact.shift, contact.defect, contact.shift_change = 0.0, 0.0, 0.0
         else:
@@ -109,7 +114,6 @@ def _make_start_block(spec: Spec):
                 slip = sqrt(one * one + two * two)
                 update_shift(contact, contact.mu * slip, stalls == SECANT)
             contact.velocity_n += contact.shift
-        contact.stiff_t = 1.0 / (softness * contact.k_t)
         contact.start_1, contact.start_2 = contact.lambda_1, contact.lambda_2
 
     return kernel(start_block, spec)

@@ -57,7 +57,9 @@ from .layout import (
     W_1,
     W_2,
     W_N,
+    YIELDING,
     N,
+    begins,
 )
 from .packing import make_put, make_put_arms, make_put_geometry
 from .spins import make_visit_roll, make_visit_torsion
@@ -67,6 +69,7 @@ def make_pack_block(spec: Spec, eight: bool) -> Any:
     """Return `kernel(contact, velocities, rows, at, factor)`: every field of a block."""
     terms = row_terms(spec)
     compliant, frictionless = terms.compliant, terms.frictionless
+    yielding, gamma_t = terms.yielding, begins(spec).end - YIELDING
     slip_velocity = make_slip_velocity(spec)
     put, put_arms = make_put(spec, eight), make_put_arms(spec, eight)
     put_axis, _, put_turns = make_put_geometry(spec, eight)
@@ -86,6 +89,10 @@ def make_pack_block(spec: Spec, eight: bool) -> Any:
         put(rows, at, INV_M_B, contact.inv_m_b)
         v_n, w_1, w_2 = slip_velocity(contact, velocities[a], velocities[b])
         put(rows, at, W_N, v_n + contact.target)
+        if yielding:
+            put(rows, at, gamma_t, contact.gamma_t)
+            w_1 -= contact.gamma_t * contact.lambda_1
+            w_2 -= contact.gamma_t * contact.lambda_2
         put(rows, at, W_1, w_1)
         put(rows, at, W_2, w_2)
         put(rows, at, INV_K, contact.inv_k)
@@ -133,6 +140,7 @@ def make_visit_block(spec: Spec, eight: bool) -> Any:
     greatest change so far [m/s].
     """
     compliant, project_disc = row_terms(spec).compliant, make_project_disc(spec)
+    yielding, gamma_t = row_terms(spec).yielding, begins(spec).end - YIELDING
     torsional, rolling = row_terms(spec).torsional, row_terms(spec).rolling
     visit_torsion: Any = make_visit_torsion(spec, eight) if torsional else None
     visit_roll: Any = make_visit_roll(spec, eight) if rolling else None
@@ -172,6 +180,9 @@ def make_visit_block(spec: Spec, eight: bool) -> Any:
         old_1, old_2 = take(rows, at, LAMBDA_1), take(rows, at, LAMBDA_2)
         if compliant:
             w_n = w_n + take(rows, at, GAMMA) * old_n
+        if yielding:
+            w_1 = w_1 + take(rows, at, gamma_t) * old_1
+            w_2 = w_2 + take(rows, at, gamma_t) * old_2
         new_n = positive(old_n - w_n * take(rows, at, INV_K))
         change_n = new_n - old_n
         w_1 = w_1 + take(rows, at, K_N1) * change_n

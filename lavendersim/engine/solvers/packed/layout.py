@@ -56,6 +56,7 @@ NORMAL, ARM_A, ARM_B = range(0, 3 * AXIS, AXIS)
     PER_MASS_A, PER_MASS_B, W_NORMAL, INV_K_NORMAL, K_NORMAL, SOFT, PRESSED,
 ) = range(3 * AXIS, 3 * AXIS + 7)  # fmt: skip
 NORMAL_ALONE = PRESSED + 1
+YIELDING = 1  # gamma along the surface, the last field of all
 # Groups of a run, and sweeps that follow each other run by run (`sweep`).
 RUN, TOGETHER = 64, 4
 LINE = 8  # numbers of a line of the processor's cache
@@ -79,7 +80,8 @@ def begins(spec: Spec) -> Begins:
     if not terms.frictional:
         return Begins(NORMAL_ALONE, NORMAL_ALONE, NORMAL_ALONE)
     roll = BLOCK + (TORSION if terms.torsional else 0)
-    return Begins(BLOCK, roll, roll + (ROLL if terms.rolling else 0))
+    end = roll + (ROLL if terms.rolling else 0)
+    return Begins(BLOCK, roll, end + (YIELDING if terms.yielding else 0))
 
 
 class PackedContacts(NamedTuple):
