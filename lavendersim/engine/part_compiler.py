@@ -30,6 +30,8 @@ from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import NativeLowering
 from numba.core.typing.templates import make_concrete_template, signature
 
+from lavendersim.garbage import collect_recent
+
 from .compiler_shortcuts import nested, packer_of, shortened
 from .field_places import composed_in, places_in
 from .kernel_lowering import KernelLowering, is_direct, names_places
@@ -331,6 +333,7 @@ class Kernel(CPUDispatcher):
         if part is None:
             part = self._compiled(key, args)
             STORE.keep(part)
+            collect_recent()  # what numba made for it holds itself, and is some megabytes
         entry = object()
         called = ExternalFunctionDescriptor(part.symbol, part.returns, args)
         self.targetctx.insert_user_function(entry, called, [part])
