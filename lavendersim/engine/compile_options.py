@@ -79,14 +79,19 @@ def _processor() -> Any:
 
 def build() -> str:
     """Return eight hex digits of what all kernels depend on, whatever they do."""
+    settings = tuple(getattr(numba.config, name, None) for name in SETTINGS)
+    # Whatever else numba is set to: a needless compilation is cheaper than a wrong kernel.
+    names = [name for name in os.environ if name.startswith("NUMBA_")]
+    environment = tuple(sorted((name, os.environ[name]) for name in names))
+    return _build(_compiler_hash(), tuple(sorted(OPTIONS.items())), settings, environment)
+
+
+@cache  # it is asked for with every part
+def _build(*differing: Any) -> str:
     parts = (
-        _compiler_hash(),
-        sorted(OPTIONS.items()),
+        differing,
         (numba.__version__, _llvmlite(), np.__version__, sys.version_info[:3]),
         platform.machine(),
         _processor(),
-        [getattr(numba.config, name, None) for name in SETTINGS],
-        # Whatever else numba is set to: a needless compilation is cheaper than a wrong kernel.
-        sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_")),
     )
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:8]

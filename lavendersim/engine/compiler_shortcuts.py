@@ -10,24 +10,29 @@ import inspect
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from copy import copy
 from typing import Any
 
-from numba.core import errors, event, ir, typeinfer, types
+from numba.core import errors, event, interpreter, ir, typeinfer
 from numba.core.datamodel.packer import ArgPacker
 from numba.core.errors import WarningsFixer  # type: ignore[attr-defined]
 from numba.core.postproc import PostProcessor
 from numba.core.transforms import canonicalize_cfg
+
+from .kernel_typing import propagate
 
 _postproc: Any = PostProcessor
 _instruction: Any = ir.Inst
 _warnings: Any = WarningsFixer
 _events: Any = event
 _typeinfer: Any = typeinfer
-if not hasattr(_typeinfer, "new_error_context"):
+_inferer: Any = typeinfer.TypeInferer
+_interpreter: Any = interpreter.Interpreter
+if not (hasattr(_typeinfer, "new_error_context") and hasattr(_interpreter, "post_process")):
     raise ImportError("numba finds types in another way")
 if not (hasattr(_instruction, "_rec_list_vars") and hasattr(_warnings, "catch_warnings")):
     raise ImportError("numba lists variables or catches warnings in another way")
+# For `with` and for dictionaries, which no kernel has.
+NEEDLESS_PEEPHOLES = "peep_hole_delete_with_exit", "peep_hole_fuse_dict_add_updates"
 _VARIABLE, _INSTRUCTION, _ROW, _NAMED, _OTHER = range(5)
 _kinds: dict[type, int] = {}
 
@@ -93,6 +98,21 @@ def shortened() -> Iterator[None]:
             self.func_ir.blocks = canonicalize_cfg(self.func_ir.blocks)
             self.func_ir.generator_info = None
 
+    asked = _inferer.propagate
+
+    def propagate_types(self: Any, raise_errors: bool = True) -> Any:
+        done = hasattr(self.func_id, "is_kernel") and propagate(self)
+        return None if done else asked(self, raise_errors)
+
+    looked_over = _interpreter.post_process
+
+    def look_over(self: Any, peepholes: Any, func_ir: Any) -> Any:
+        if hasattr(self.func_id, "is_kernel"):
+            peepholes = [each for each in peepholes if each.__name__ not in NEEDLESS_PEEPHOLES]
+        return looked_over(self, peepholes, func_ir)
+
+    _interpreter.post_process = look_over
+    _inferer.propagate = propagate_types
     _postproc.run = run
     _instruction._rec_list_vars = variables_of
     _warnings.catch_warnings = _as_they_come
@@ -105,6 +125,8 @@ def shortened() -> Iterator[None]:
     try:
         yield
     finally:
+        _interpreter.post_process = looked_over
+        _inferer.propagate = asked
         _postproc.run = whole
         _instruction._rec_list_vars = listed
         _warnings.catch_warnings = caught
@@ -166,27 +188,3 @@ def packer_of(models: Any) -> Callable[[Any], ArgPacker]:
         return found
 
     return packer
-
-
-_SCALARS = types.Number, types.Boolean, types.NoneType, types.Literal
-_resolved: dict[Any, Any] = {}
-
-
-def quick(typingctx: Any) -> Any:
-    """Return a typing context that remembers what functions of scalars return.
-
-    Numba asks some twenty templates for the type of every sum of two numbers, each time.
-    """
-    quick = copy(typingctx)
-
-    def resolve_function_type(function: Any, args: Any, kws: Any) -> Any:
-        scalar = isinstance(function, types.Function) and not kws
-        if not scalar or not all(isinstance(kind, _SCALARS) for kind in args):
-            return typingctx.resolve_function_type(function, args, kws)
-        found = _resolved.get((function, args))
-        if found is None:
-            found = _resolved[function, args] = typingctx.resolve_function_type(function, args, kws)
-        return found
-
-    quick.resolve_function_type = resolve_function_type
-    return quick

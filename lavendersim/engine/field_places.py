@@ -20,6 +20,7 @@ from typing import Any, Final
 from llvmlite.ir import Constant, GlobalVariable, IntType
 from numba.core import types
 
+from .light_values import at_entry, pointing_to
 from .records import ANGULAR_VELOCITY, BODY, CONTACT, DRIVE, LINK, MOTION, PAIR, VELOCITY, Field
 
 PREFIX: Final = ".place."
@@ -89,20 +90,20 @@ def place(builder: Any, name: str, field: str) -> Any:
     if known is None:
         known = GlobalVariable(builder.module, WORD, symbol)
         known.global_constant = True
-    return builder.load(known)
+    return at_entry(builder, known)
 
 
 def pointer(builder: Any, record: Any, name: str, field: str) -> Any:
     """Return the address of a field of a composed record, of a byte."""
-    begin = builder.bitcast(record, BYTE.as_pointer())
+    begin = pointing_to(builder, record, BYTE)
     return builder.gep(begin, (place(builder, name, field),), inbounds=True)
 
 
 def row(builder: Any, data: Any, name: str, index: Any) -> Any:
     """Return a row of composed records that begin at `data`."""
-    begin = builder.bitcast(data, BYTE.as_pointer())
+    begin = pointing_to(builder, data, BYTE)
     offset = builder.mul(index, place(builder, name, ROW), flags=("nsw",))
-    return builder.bitcast(builder.gep(begin, (offset,)), data.type)
+    return pointing_to(builder, builder.gep(begin, (offset,)), data.type.pointee)
 
 
 def copy(builder: Any, name: str, to: Any, of: Any) -> None:
@@ -110,7 +111,7 @@ def copy(builder: Any, name: str, to: Any, of: Any) -> None:
     kind = BYTE.as_pointer()
     called = builder.module.declare_intrinsic("llvm.memcpy", [kind, kind, WORD])
     size = place(builder, name, ROW)
-    ends = builder.bitcast(to, kind), builder.bitcast(of, kind)
+    ends = pointing_to(builder, to, BYTE), pointing_to(builder, of, BYTE)
     builder.call(called, [*ends, size, Constant(IntType(1), 0)])
 
 

@@ -11,12 +11,13 @@ import operator
 from typing import Any, Final
 
 from llvmlite.ir import Constant, IntType
-from numba.core import cgutils, types
+from numba.core import types
 from numba.core.datamodel.registry import default_manager
 from numba.core.lowering import Lower
 
 from . import field_places
 from .field_places import FIELDS, composed_name
+from .light_values import pointing_to, slot
 from .memory_references import are_rows, is_memory, item
 from .range_loops import ITERATOR, RANGE, begun, limits, next_of
 
@@ -105,7 +106,7 @@ class ShortExpressions(Lower):
         else:
             offset = Constant(INT32, kind.offset(name))
             at = self.builder.gep(record, (Constant(INT32, 0), offset), inbounds=True)
-        return self.builder.bitcast(at, self.context.get_data_type(field).as_pointer())
+        return pointing_to(self.builder, at, self.context.get_data_type(field))
 
     def attribute(self, resty: Any, expr: Any) -> Any:
         """Return a field of a record or a named tuple, or the shape of an array."""
@@ -131,7 +132,7 @@ class ShortExpressions(Lower):
         kind, index = self.typeof(expr.value.name), expr.index
         if isinstance(kind, types.Record) and isinstance(index, str):
             return self._field(resty, expr.value.name, kind, index)
-        if isinstance(index, int) and self._has_row(resty, kind):
+        if isinstance(index, int) and self.has_row(resty, kind):
             at = Constant(WORD, index)
             return self._value(resty, self.row_at(expr.value.name, at, signed=index < 0))
         if not isinstance(kind, types.BaseTuple) or not isinstance(index, int):
@@ -149,7 +150,7 @@ class ShortExpressions(Lower):
     def row(self, resty: Any, expr: Any) -> Any:
         """Return a row of an array, a record or a number; a negative index counts from the end."""
         kind, index = self.typeof(expr.value.name), self.plain(expr.index.name)
-        if index not in INDICES or not self._has_row(resty, kind):
+        if index not in INDICES or not self.has_row(resty, kind):
             return None
         at = self.loadvar(expr.index.name)
         row = self.row_at(expr.value.name, at, signed=index == types.int64)
@@ -158,7 +159,8 @@ class ShortExpressions(Lower):
     def _value(self, kind: Any, row: Any) -> Any:
         return row if isinstance(kind, types.Record) else self.builder.load(row)
 
-    def _has_row(self, row: Any, kind: Any) -> bool:
+    def has_row(self, row: Any, kind: Any) -> bool:
+        """Whether a type is an array of such rows that are reached by their number alone."""
         if not are_rows(kind) or not kind.aligned or row != kind.dtype:
             return False
         plain = isinstance(row, (types.Record, *map(type, FIELDS)))
@@ -261,8 +263,8 @@ class ShortExpressions(Lower):
         context, builder, called = self.context, self.builder, linked.called
         function = context.declare_function(self.module, called)
         kind = context.call_conv.get_return_type(called.restype).pointee
-        returned = cgutils.alloca_once(builder, kind)
-        raised = cgutils.alloca_once(builder, function.function_type.args[1].pointee)
+        returned = slot(builder, kind)
+        raised = slot(builder, function.function_type.args[1].pointee)
         packed = context.call_conv._get_arg_packer(called.argtypes).as_arguments(builder, values)
         builder.call(function, [returned, raised, *packed])
         context.active_code_library.add_linking_library(linked.part)

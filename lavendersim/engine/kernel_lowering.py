@@ -19,6 +19,7 @@ from numba.core.typed_passes import NativeLowering
 
 from . import field_places
 from .compile_options import OPTIONS
+from .field_places import FIELDS
 from .kernel_expressions import INDICES, WORD, ShortExpressions
 from .memory_references import for_python
 from .range_loops import RANGE
@@ -56,7 +57,7 @@ class KernelLower(ShortExpressions):
             super().lower_inst(inst)
 
     def _stored(self, inst: Any) -> bool:
-        """Store what an instruction stores: a field of a record, or a whole record in a row."""
+        """Store what an instruction stores: a field of a record, a number, or a whole record."""
         if isinstance(inst, ir.SetAttr):
             return self._set_field(inst, inst.attr)
         if isinstance(inst, ir.StaticSetItem) and isinstance(inst.index, str):
@@ -109,7 +110,11 @@ class KernelLower(ShortExpressions):
         return True
 
     def _set_row(self, inst: Any, at: Any, *, signed: bool) -> bool:
-        kind, value = self.typeof(inst.target.name), self.typeof(inst.value.name)
+        kind, value = self.typeof(inst.target.name), self.plain(inst.value.name)
+        if value in FIELDS and self.has_row(value, kind):
+            row = self.row_at(inst.target.name, at, signed=signed)
+            self.builder.store(self.loadvar(inst.value.name), row)
+            return True
         composed = self.composed(value)
         if not composed or kind.dtype != value:
             return False

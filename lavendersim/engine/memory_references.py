@@ -21,6 +21,7 @@ from numba.core.datamodel.packer import ArgPacker
 from numba.core.datamodel.registry import default_manager
 
 from .field_places import composed_name
+from .light_values import pointing_to
 
 BYTES = IntType(8).as_pointer()
 _size: Any = types.intp
@@ -158,7 +159,7 @@ def _moved(builder: Any, memory: Any, words: int) -> Any:
 
 def _constant(builder: Any, memory: Any, words: int, kind: Any) -> Any:
     """Return what lies at a place that no kernel writes to: it can be read when it is needed."""
-    at = builder.bitcast(_moved(builder, memory, words), kind.as_pointer())
+    at = pointing_to(builder, _moved(builder, memory, words), kind)
     value = builder.load(at)
     value.set_metadata("invariant.load", builder.module.add_metadata([]))
     return value

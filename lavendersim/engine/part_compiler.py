@@ -30,10 +30,13 @@ from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import NativeLowering
 from numba.core.typing.templates import make_concrete_template, signature
 
-from .compiler_shortcuts import nested, packer_of, quick, shortened
+from lavendersim.garbage import collect_recent
+
+from .compiler_shortcuts import nested, packer_of, shortened
 from .field_places import composed_in, places_in
 from .kernel_lowering import KernelLowering, is_direct, names_places
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of
+from .kernel_typing import quick
 from .memory_references import REFERENCES, are_rows
 from .optimisation import optimise
 from .separate_code import merge, separate_code
@@ -320,17 +323,27 @@ class Kernel(CPUDispatcher):
         self.linked: dict[tuple[Any, ...], Linked] = {}  # by the types of the arguments
         self.separate = 0  # how it is optimised without its callers (`separate_code`)
 
+    def signature_for(self, args: Any, kws: Any) -> Any:
+        """Return how a kernel calls this one, which is compiled for it."""
+        pysig, args = self._compiler.fold_argument_types(args, kws)
+        return self._linked(tuple(args)).signature.replace(pysig=pysig)
+
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        """Compile for a kernel that calls this one."""
+        """Compile for a function of numba's that calls this one."""
         pysig, args = self._compiler.fold_argument_types(args, kws)
         args = tuple(args)
-        with global_compiler_lock:
-            if args not in self.linked:
-                self.linked[args] = self._link(args)
+        self._linked(args)
         name = self.py_func.__name__
         signatures = [each.signature for each in self.linked.values()]
         template = make_concrete_template(f"CallTemplate({name})", key=name, signatures=signatures)
         return template, pysig, args, {}
+
+    def _linked(self, args: tuple[Any, ...]) -> Linked:
+        with global_compiler_lock:
+            found = self.linked.get(args)
+            if found is None:
+                found = self.linked[args] = self._link(args)
+        return found
 
     def get_overload(self, sig: Any) -> Any:
         """Return what the code that a kernel calls is looked up by."""
@@ -343,6 +356,7 @@ class Kernel(CPUDispatcher):
         if part is None:
             part = self._compiled(key, args)
             STORE.keep(part)
+            collect_recent()  # what numba made for it holds itself, and is some megabytes
         entry = object()
         called = ExternalFunctionDescriptor(part.symbol, part.returns, args)
         self.targetctx.insert_user_function(entry, called, [part])

@@ -12,8 +12,10 @@ from __future__ import annotations
 from typing import Any
 
 from llvmlite.ir import Constant, Undefined
-from numba.core import cgutils, types
+from numba.core import types
 from numba.core.datamodel.registry import default_manager
+
+from .light_values import slot
 
 RANGE, ITERATOR = types.range_state64_type, types.range_iter64_type
 
@@ -45,7 +47,7 @@ def begun(builder: Any, within: Any, step: int) -> Any:
         left = builder.add(left, Constant(number, abs(step) - 1))
         left = builder.sdiv(left, Constant(number, abs(step)))
     left = builder.select(builder.icmp_signed(">", left, zero), left, zero)
-    value, count = (cgutils.alloca_once(builder, number) for _ in range(2))
+    value, count = (slot(builder, number) for _ in range(2))
     builder.store(start, value)
     builder.store(left, count)
     steps = Constant(number, step)

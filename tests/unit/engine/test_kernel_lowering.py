@@ -34,3 +34,21 @@ def test_same_bits_as_by_numba(x, flag):
     expected = numba.njit(error_model="numpy")(statements)(theirs, x, flag)
     assert np.array(found).tobytes() == np.array(expected).tobytes()
     assert ours.tobytes() == theirs.tobytes()
+
+
+def stores(numbers, counts, at, x):
+    numbers[at], numbers[-1], numbers[0] = x, 2.0 * x, -0.0
+    for k in range(1, counts.shape[0]):
+        counts[k] = at - k
+        counts[np.uint64(0)] = counts[k] * 3
+    numbers[1] = counts[-2]  # a number of another type, which numba's own lowering stores
+    return numbers[at]
+
+
+@pytest.mark.parametrize("at", [3, -2])
+def test_numbers_in_rows_are_stored_as_by_numba(at):
+    ours, theirs = ((np.zeros(6), np.zeros(3, np.int64)) for _ in range(2))
+    found = inner(stores)(*ours, at, -1.5)
+    assert found == numba.njit(error_model="numpy")(stores)(*theirs, at, -1.5) == -1.5
+    for own, of_numba in zip(ours, theirs, strict=True):
+        assert own.tobytes() == of_numba.tobytes()
