@@ -5,7 +5,8 @@ momentum     m (v_1 - v_0) = (m g + F) dt + sum of impulses, of each body that n
              where a step says that springs were not found, of none that contacts join to one
 penetration  grows in a step by no more than two bodies can move in it, as depth is 1-Lipschitz in
              where bodies stand: |d(x) - d(y)| <= |x - y|; not of stops of joints, whose arm is as
-             long as their axis is far, and which a turn by more than half a circle passes by
+             long as their axis is far, and which a turn by more than half a circle passes by; of
+             meshes up to what a body reaches, for one whose centre is behind a face touches nothing
 gap          what pushes touches, or comes to touch by what the two bodies move in the step, or
              would without contacts (Signorini); but for a push as small as the row's residual
 energy       does not grow but by what a step's residual and its first order in time leave, where
