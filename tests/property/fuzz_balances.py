@@ -89,9 +89,10 @@ def _momentum(config: CellConfig, rows: Rows, steps: Steps) -> list[str]:
         gained_by_contacts(steps),
         np.zeros(before.mass.shape),
     )
+    # What cohesion takes back of a push is as large on its way.
+    sizes = np.abs(push).sum(axis=1) + np.abs(contact["impulse_n"])
     for column in ("body_a", "body_b"):
-        place = (steps.at, contact[column])
-        np.add.at(size, place, np.abs(push).sum(axis=1) + np.abs(contact["impulse_n"]))
+        np.add.at(size, (steps.at, contact[column]), sizes)
     weight = before.mass[..., None] * before.gravity[:, None] + before.force
     weight *= before.dt[:, None, None]
     change = before.mass[..., None] * (after.velocity - before.velocity)
@@ -101,7 +102,7 @@ def _momentum(config: CellConfig, rows: Rows, steps: Steps) -> list[str]:
     free &= ~np.array(pulled(config)) & ~_placed(config, rows, steps)
     miss = np.linalg.norm(change - weight - gained, axis=2)
     largest = np.zeros(len(before.dt))
-    np.maximum.at(largest, steps.at, np.abs(push).sum(axis=1))
+    np.maximum.at(largest, steps.at, sizes)
     if config.numerics.warm_start:
         largest[1:] = np.maximum(largest[1:], largest[:-1])
     wrong = free & ~(miss <= ROUND_OFF * size + TAKEN_BACK * largest[:, None])

@@ -109,6 +109,17 @@ def test_a_warm_start_rounds_by_the_impulses_of_the_step_before(warm_start: bool
     assert bool(found) == (not warm_start)
 
 
+@pytest.mark.parametrize(("share", "seen"), [(0.9, False), (1.1, True)])
+def test_a_push_that_cohesion_takes_back_rounds_like_one_that_is_left(share: float, seen: bool):
+    """100 N s against 100 N s: as large as both may a row be, on its way, that ends with none."""
+    held = {"step": 1, "body_a": 0, "body_b": 0, "nz": 1.0, "impulse_n": 100.0}
+    left = share * TAKEN_BACK * 100.0 / MASS
+    row = held | {"adhesive_impulse": 100.0}
+    steps = steps_of([row], v=np.array([0.0, left, left]))
+    found = _momentum(cell_of(), SimpleNamespace(step=np.zeros(3)), steps)
+    assert bool(found) == seen
+
+
 def test_a_torque_that_a_contact_holds_would_have_brought_its_body_near() -> None:
     """3 N m by 2 N s^2/m/(0.5 kg m^2): 6 m/s^2 dt of a surface 0.5 m from the centre, for dt."""
     row = {"step": 1, "body_a": 0, "body_b": 1, "impulse_n": 1.0, "inverse_effective_mass": 1.0,
