@@ -19,8 +19,10 @@ from .compile import kernel
 from .spec import Spec
 from .step_terms import step_terms
 
-# Substeps end at knots but for round-off: knots this near are there, of 1 s and of the time [-].
+# Substeps end at knots but for round-off: knots this near are there, of the time and MOMENT [-].
 NEAR = 1e-12
+# Time whose digits one near 0 has by what it is the difference of [s].
+MOMENT = 1.0
 
 
 def make_begin_of_part(spec: Spec) -> Any:
@@ -54,7 +56,7 @@ def make_next_knot(spec: Spec) -> Any:
     last_knot = make_last_knot(spec)
 
     def next_knot(drives, t, until):
-        slack = NEAR * (1.0 + t)
+        slack = NEAR * (MOMENT + t)
         for d in range(drives.records.shape[0]):
             drive = drives.records[d]
             k = last_knot(drive, drives.knots, t + slack) + 1
@@ -102,7 +104,7 @@ def make_rates(spec: Spec) -> Any:
     near = NEAR if step_terms(spec).substeps else 0.0
 
     def rates(drive, knots, t, after):
-        slack = near * (1.0 + t)
+        slack = near * (MOMENT + t)
         k, first, second, third = last_knot(drive, knots, t + slack), 0.0, 0.0, 0.0
         if not after:
             while k >= drive.first and knots[k].time >= t - slack:

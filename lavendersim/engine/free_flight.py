@@ -8,15 +8,17 @@ from .compile import inner, kernel
 from .row_terms import row_terms
 from .spec import Spec
 
-# Room [m/s, and of the velocity] that such a row leaves: round-off must not push what flies, for
-# what a contact pushes is carried by the velocity of the step's end.
+# Share of the velocity, and of ROUNDED, that such a row leaves as room: round-off must not push
+# what flies, for what a contact pushes is carried by the velocity of the step's end [-].
 LOOSE = 1e-12
+# Speed whose digits a velocity near 0 has by what it is the difference of [m/s].
+ROUNDED = 1.0
 
 
 @inner
 def target_of_flight(v_n):
     """Return the target [m/s] that holds without a push; v_n: normal velocity before the solve."""
-    return -v_n + LOOSE * (1.0 + abs(v_n))
+    return -v_n + LOOSE * (ROUNDED + abs(v_n))
 
 
 def make_widen(spec: Spec) -> Any:

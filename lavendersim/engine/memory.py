@@ -35,13 +35,13 @@ from .record_layout import (
     residual_row_dtype,
     step_row_dtype,
 )
-from .records import COUNTERS, MOTION, OVERLOOKED, dtype
+from .records import COUNTERS, MOTION, OVERLOOKED, UNMADE, dtype
 from .solvers.catalogue import SOLVERS
 from .spec import Spec
 from .step_doubling import allocate_control, with_capacity
 from .step_terms import step_terms
 
-_MOTION, _OVERLOOKED = dtype(MOTION), dtype(OVERLOOKED)
+_MOTION, _OVERLOOKED, _UNMADE = dtype(MOTION), dtype(OVERLOOKED), dtype(UNMADE)
 
 
 class Drives(NamedTuple):
@@ -72,6 +72,7 @@ class Overlooked(NamedTuple):
 
     points: np.ndarray  # (2 m,) OVERLOOKED; m contacts at most
     noted: np.ndarray  # (1,) int64, how many
+    unmade: np.ndarray  # (1,) UNMADE: the part that waits for room in the log, or for rows
 
 
 class Trial(NamedTuple):
@@ -232,7 +233,9 @@ def allocate_workspace(
         ),
         ordering=allocate_ordering(spec, bodies, 0),
         contact_lists=allocate_contact_lists(0, 0),
-        overlooked=Overlooked(np.zeros(0, _OVERLOOKED), np.zeros(1, np.int64)),
+        overlooked=Overlooked(
+            np.zeros(0, _OVERLOOKED), np.zeros(1, np.int64), np.zeros(1, _UNMADE)
+        ),
         islands=np.zeros(bodies if has_hook(spec, "update_sleeping") else 0, np.int64),
         solver=(),
         free_velocities=np.zeros(free, state.velocities.dtype),

@@ -163,6 +163,13 @@ OVERLOOKED: Final[list[Field]] = [
     ("phi", F8),  # [m]
 ]
 
+# A part of a step that is made again, and has not been: there was no room (`overlooked_points`).
+UNMADE: Final[list[Field]] = [
+    ("again", I8),  # 1: there is one
+    ("listed", I8),  # pairs
+    ("longest", F8),  # it may be [s]
+]
+
 # Position and orientation, quaternion w x y z.
 POSE: Final[list[Field]] = [(name, F8) for name in ("x", "y", "z", "qw", "qx", "qy", "qz")]
 

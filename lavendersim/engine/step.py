@@ -140,6 +140,11 @@ def make_advance(spec: Spec) -> Any:
             pull = workspace.collision.outline_a.pull
             pull[0], pull[1], pull[2] = params.gx, params.gy, params.gz
         done, listed, again, longest = 0, 0, False, NEVER
+        if overlooks:
+            unmade = workspace.overlooked.unmade[0]
+            if unmade.again == 1:
+                listed, again, longest = unmade.listed, True, unmade.longest
+                unmade.again = 0
         while done < steps:
             begins = True
             if in_parts:
@@ -221,7 +226,10 @@ def make_advance(spec: Spec) -> Any:
                         counters.spring_not_converged = unfound
                 if overlooks:
                     if again:
-                        forget_whole(pairs, listed)
+                        if controlled or full == WOKEN:
+                            forget_whole(pairs, listed)
+                        else:  # till there is room
+                            unmade.again, unmade.listed, unmade.longest = 1, listed, longest
                 if controlled:
                     abandon(state, params, counter, log.step)
                 params.dt = params.timestep

@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from .compile import kernel
-from .drives import NEAR, make_begin_of_part, make_next_knot
+from .drives import MOMENT, NEAR, make_begin_of_part, make_next_knot
 from .effects import has_hook, made_by
 from .error_estimate import PATH, make_add_paths, make_estimate
 from .hidden_bends import make_note_loads
@@ -140,7 +140,7 @@ def make_begin_substep(spec: Spec) -> Any:
         if driven:  # none is of second order where what acts on bodies bends or jumps
             now = begin_of_part(params, counters)
             knot = next_knot(state.drives, now, now + left)
-            if knot < now + left - NEAR * (1.0 + now):
+            if knot < now + left - NEAR * (MOMENT + now):
                 left, until = knot - now, record.start + (knot - now)
         record.phase, record.length, record.until = WHOLE, left, until
         shortest = params.smallest_timestep

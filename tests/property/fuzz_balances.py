@@ -5,7 +5,8 @@ momentum     m (v_1 - v_0) = (m g + F) dt + sum of impulses, of each body that n
              where a step says that springs were not found, of none that contacts join to one
 penetration  grows in a step by no more than two bodies can move in it, as depth is 1-Lipschitz in
              where bodies stand: |d(x) - d(y)| <= |x - y|; not of stops of joints, whose arm is as
-             long as their axis is far, and which a turn by more than half a circle passes by
+             long as their axis is far, and which a turn by more than half a circle passes by; of
+             meshes up to what a body reaches, for one whose centre is behind a face touches nothing
 gap          what pushes touches, or comes to touch by what the two bodies move in the step, or
              would without contacts (Signorini); but for a push as small as the row's residual
 energy       does not grow but by what a step's residual and its first order in time leave, where
@@ -88,9 +89,10 @@ def _momentum(config: CellConfig, rows: Rows, steps: Steps) -> list[str]:
         gained_by_contacts(steps),
         np.zeros(before.mass.shape),
     )
+    # What cohesion takes back of a push is as large on its way.
+    sizes = np.abs(push).sum(axis=1) + np.abs(contact["impulse_n"])
     for column in ("body_a", "body_b"):
-        place = (steps.at, contact[column])
-        np.add.at(size, place, np.abs(push).sum(axis=1) + np.abs(contact["impulse_n"]))
+        np.add.at(size, (steps.at, contact[column]), sizes)
     weight = before.mass[..., None] * before.gravity[:, None] + before.force
     weight *= before.dt[:, None, None]
     change = before.mass[..., None] * (after.velocity - before.velocity)
@@ -100,7 +102,7 @@ def _momentum(config: CellConfig, rows: Rows, steps: Steps) -> list[str]:
     free &= ~np.array(pulled(config)) & ~_placed(config, rows, steps)
     miss = np.linalg.norm(change - weight - gained, axis=2)
     largest = np.zeros(len(before.dt))
-    np.maximum.at(largest, steps.at, np.abs(push).sum(axis=1))
+    np.maximum.at(largest, steps.at, sizes)
     if config.numerics.warm_start:
         largest[1:] = np.maximum(largest[1:], largest[:-1])
     wrong = free & ~(miss <= ROUND_OFF * size + TAKEN_BACK * largest[:, None])

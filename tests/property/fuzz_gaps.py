@@ -132,20 +132,40 @@ def is_anew(config: CellConfig, steps: Steps) -> bool:
     return moved or bool(steps.before.asleep.any())
 
 
+def _deepest_but(these: np.ndarray, deepest: np.ndarray, steps: Steps) -> np.ndarray:
+    """Return the depth of each step (k,) [m], of others where it may be that of these rows."""
+    depths = np.zeros((2, len(deepest)))
+    for depth, own in zip(depths, (these, ~these), strict=True):
+        np.maximum.at(depth, steps.at[own], steps.contact["penetration"][own])
+    return np.where(deepest > depths[0], deepest, depths[1])
+
+
+def _came_before_a_face(config: CellConfig, steps: Steps) -> np.ndarray:
+    """Return which rows may be of a body whose centre was behind a mesh's face, and is no longer.
+
+    Behind it does not touch; before it, it is as deep as it reaches at most. No way of it tells.
+    """
+    mesh = np.array([body.shape.kind == "mesh" for body in config.scene.bodies.values()])
+    rows = steps.contact
+    a, b = rows["body_a"], rows["body_b"]
+    reach = steps.before.bound[steps.at, np.where(mesh[a], b, a)]
+    found: np.ndarray = (mesh[a] | mesh[b]) & (rows["penetration"] <= (1.0 + NEAR) * reach)
+    return found
+
+
 def deeper_than_moved(config: CellConfig, rows: Rows, steps: Steps) -> list[str]:
     """What was passed over as flush, which is no contact, is as deep as that at most."""
     count, reach = len(steps.before.dt), _pair_reach(rows, steps)
     flush = FLUSH * config.numerics.slop + TOUCHING
     deepest = rows.step["max_penetration"][1 : count + 1]
     if "joint" in (steps.contact.dtype.names or ()):
-        stops, others = np.zeros(count), np.zeros(count)
-        joint = steps.contact["joint"] > 0
-        for depth, own in ((stops, joint), (others, ~joint)):
-            np.maximum.at(depth, steps.at[own], steps.contact["penetration"][own])
-        deepest = np.where(deepest > stops, deepest, others)
+        deepest = _deepest_but(steps.contact["joint"] > 0, deepest, steps)
     allowed = np.full(count, np.inf)  # of what overlaps as it begins nothing is said
     allowed[1:] = np.maximum(deepest[:-1], flush) + reach[1:] + reach[:-1]
     allowed += NEAR * steps.before.bound.max(axis=1)
+    came_before = _came_before_a_face(config, steps)
+    if came_before.any():
+        deepest = _deepest_but(came_before, deepest, steps)
     wrong = deepest > allowed
     if not wrong.any():
         return []

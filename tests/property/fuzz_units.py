@@ -1,8 +1,7 @@
 """A drawn scene in another unit of mass: every motion to the bit, every impulse times the ratio.
 
 A power of four rounds nothing, nor does its root: no mass stands in the engine as a number. Lengths
-and times are not so: what touches is known to a distance, fixed points end at a speed;
-`test_zoo_symmetries` says how far. Numbers too near to 0 or to the greatest do round: of runs that
+and times do: see `fuzz_constants`. Numbers too near to 0 or to the greatest do round: of runs that
 have such nothing is said (`rounds`).
 """
 

@@ -12,9 +12,9 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
-from convex import matrix_of
 
 from lavendersim.cell import CellConfig
+from lavendersim.geometry.rotations import rotation_matrix
 
 Tree = dict[str, Any]
 # Units of keys, as powers of length and time. Of functions of time `offset` has none; what joints
@@ -66,7 +66,7 @@ class View(NamedTuple):
 
     def polar(self, vector: Any) -> Any:
         """Return a vector of the world as it is seen, without units; or many."""
-        return (np.asarray(vector) * self.flip) @ matrix_of(np.array(self.turn)).T
+        return (np.asarray(vector) * self.flip) @ rotation_matrix(self.turn).T
 
     def axial(self, vector: Any) -> Any:
         """Return an axis of turning as it is seen."""
@@ -92,6 +92,15 @@ class View(NamedTuple):
         seen[..., 10:] = self.axial(plain[..., 10:]) / self.time
         seen[:, planes] = plain[:, planes]
         return seen
+
+    def plain_poses(self, seen: np.ndarray, planes: list[bool]) -> np.ndarray:
+        """Return poses of the run in other units, in those of the plain one; see `poses`."""
+        plain = seen.copy()
+        plain[..., :3] /= self.length
+        plain[..., 7:10] /= self.length / self.time
+        plain[..., 10:] *= self.time
+        plain[:, planes] = seen[:, planes]
+        return plain
 
     def names(self, bodies: Any) -> list[str]:
         """Return the names of bodies in the order of the view."""

@@ -42,10 +42,15 @@ def logged(first: float, second: float, parts: int = 1) -> Any:
     return SimpleNamespace(step=step)
 
 
-def cell_of(cone: str = "disc", warm_start: bool = False, slop: float = 0.0) -> Any:
+def cell_of(
+    cone: str = "disc", warm_start: bool = False, slop: float = 0.0, floor: str = "plane"
+) -> Any:
     numerics = SimpleNamespace(friction_cone=cone, warm_start=warm_start, slop=slop)
-    free = SimpleNamespace(drag=None)
-    scene = SimpleNamespace(bodies={"floor": free, "ball": free}, forces=[], springs=[])
+    bodies = {
+        name: SimpleNamespace(drag=None, shape=SimpleNamespace(kind=kind))
+        for name, kind in (("floor", floor), ("ball", "sphere"))
+    }
+    scene = SimpleNamespace(bodies=bodies, forces=[], springs=[])
     return SimpleNamespace(numerics=numerics, scene=scene)
 
 
@@ -54,6 +59,17 @@ def test_a_stop_that_its_joint_tears_past_is_no_overlap(joint: int) -> None:
     """Its depth is an arm, as long as the axis is far, times the turn that is missing."""
     steps = steps_of([STILL | {"joint": joint, "penetration": 5.0}])
     assert bool(deeper_than_moved(cell_of(), logged(0.0, 5.0), steps)) == (joint == 0)
+
+
+@pytest.mark.parametrize("floor", ["plane", "mesh"])
+@pytest.mark.parametrize("deep", [0.49, 0.51])
+def test_what_comes_before_a_face_from_behind_is_as_deep_as_it_reaches(floor: str, deep: float):
+    """A ball of 0.5 m whose centre was behind a mesh's face, where it does not touch it."""
+    steps = steps_of([STILL | {"penetration": deep}])
+    bound = np.tile([0.0, 0.5], (2, 1))
+    steps = steps._replace(before=steps.before._replace(bound=bound))
+    allowed = floor == "mesh" and deep < 0.5
+    assert bool(deeper_than_moved(cell_of(floor=floor), logged(0.0, deep), steps)) != allowed
 
 
 def test_what_is_passed_over_as_flush_is_as_deep_as_ten_slops_when_it_is_met() -> None:
@@ -91,6 +107,17 @@ def test_a_warm_start_rounds_by_the_impulses_of_the_step_before(warm_start: bool
     steps = steps_of([row], v=np.array([-50.0, 0.0, left]))
     found = _momentum(cell_of(warm_start=warm_start), SimpleNamespace(step=np.zeros(3)), steps)
     assert bool(found) == (not warm_start)
+
+
+@pytest.mark.parametrize(("share", "seen"), [(0.9, False), (1.1, True)])
+def test_a_push_that_cohesion_takes_back_rounds_like_one_that_is_left(share: float, seen: bool):
+    """100 N s against 100 N s: as large as both may a row be, on its way, that ends with none."""
+    held = {"step": 1, "body_a": 0, "body_b": 0, "nz": 1.0, "impulse_n": 100.0}
+    left = share * TAKEN_BACK * 100.0 / MASS
+    row = held | {"adhesive_impulse": 100.0}
+    steps = steps_of([row], v=np.array([0.0, left, left]))
+    found = _momentum(cell_of(), SimpleNamespace(step=np.zeros(3)), steps)
+    assert bool(found) == seen
 
 
 def test_a_torque_that_a_contact_holds_would_have_brought_its_body_near() -> None:

@@ -17,10 +17,9 @@ one motion, and without projection, of whose sweeps no residual says what they l
 pyramid follow the axes of the world: it is not turned.
 
 Of plans with spheres, boxes, capsules and compounds of them: rims are met to 1e-6 of a turn, see
-`test_zoo_symmetries`. Other units of length and time are measured, with no bound: TOUCHING [m] and
-the ends of fixed points stay what they are. Of mass: `fuzz_units`, to the bit.
-`LAVENDER_TEST_VIEWS` draws more than 24 configs; `python tests/property/test_fuzz_views.py PLAN
-SEED FIRST COUNT [units]` draws them on another plan.
+`test_zoo_symmetries`. In other units of length and time: `fuzz_constants`, of mass: `fuzz_units`,
+both to the bit. `LAVENDER_TEST_VIEWS` draws more than 24 configs; `python
+tests/property/test_fuzz_views.py PLAN SEED FIRST COUNT` draws them on another plan.
 """
 
 from __future__ import annotations
@@ -48,7 +47,6 @@ VIEWS = (
     View("mirrored", mirror=True),
     View("listed otherwise", order=1),
 )
-UNITS = (View("lengths", length=8.0), View("times", time=4.0))
 
 
 def apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
@@ -153,7 +151,6 @@ def test_an_image_of_the_wrong_hand_is_seen(monkeypatch: pytest.MonkeyPatch) -> 
 
 if __name__ == "__main__":
     asked, seed, first, count = (int(one) for one in sys.argv[1:5])
-    seen = UNITS if "units" in sys.argv[5:] else VIEWS
     plan = drawn_plans(asked + 1, seed)[asked]
-    lines, steps = judged(plan, seed, range(first, first + count), seen)
+    lines, steps = judged(plan, seed, range(first, first + count))
     print(*lines, f"{count} configs, {steps} steps compared, {len(lines)} differ", sep="\n")

@@ -10,6 +10,7 @@ without. What is left is no worse than before.
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from ...compile import kernel, separate
@@ -21,6 +22,13 @@ from ..sweep import make_sweep
 from .alart_curnier import make_alart_curnier
 from .factor import eliminates
 from .inside_cones import LONG_STEPS, MOST, SHORT_STEPS, make_from_inside
+from .kept_velocities import (
+    LOST,
+    OF_BEFORE,
+    make_keep_velocities,
+    make_put_velocities,
+    make_speed,
+)
 from .method import make_set_impulse
 from .rounds import STIFF_ENOUGH
 from .torques import make_limits_torque
@@ -34,8 +42,10 @@ FEWER_TURNS, NEAR = 4, 10.0
 # Visits of a turn at most where bodies are many: what this solves is rare, and a large scene's
 # turns would take minutes.
 MOST_VISITS = 10_000_000
-# Columns of `Envelope.inside` behind those of `inside_cones`: the best impulses [N s]
+# Columns of `Envelope.inside` behind those of `inside_cones`: the best impulses, and those that it
+# began with [N s].
 BEST_N, BEST_1, BEST_2 = range(3, 6)
+FIRST_N, FIRST_1, FIRST_2 = range(6, 9)
 
 
 def make_are_cones(spec: Spec) -> Any:
@@ -73,6 +83,8 @@ def make_begin_again(spec: Spec) -> Any:
     alart_curnier, set_impulse = make_alart_curnier(spec), make_set_impulse(spec)
     are_cones, sweep = make_are_cones(spec), make_sweep(spec)
     many = eliminates(spec)
+    keep_velocities, put_velocities = make_keep_velocities(spec), make_put_velocities(spec)
+    speed = make_speed(spec)
 
     def keep(contacts, count, workspace):
         for c in range(count):
@@ -82,15 +94,31 @@ def make_begin_again(spec: Spec) -> Any:
 
     keep = kernel(keep, spec)
 
+    def keep_first(contacts, count, workspace):
+        for c in range(count):
+            contact, kept = contacts[c], workspace.inside[c]
+            kept[FIRST_N] = contact.lambda_n
+            kept[FIRST_1], kept[FIRST_2] = contact.lambda_1, contact.lambda_2
+
+    keep_first = kernel(keep_first, spec)
+
+    def put_first(contacts, count, workspace):
+        for c in range(count):
+            contact, kept = contacts[c], workspace.inside[c]
+            contact.lambda_n = kept[FIRST_N]
+            contact.lambda_1, contact.lambda_2 = kept[FIRST_1], kept[FIRST_2]
+
+    put_first = kernel(put_first, spec)
+
     def end_with_rounds(system, workspace, size, most, residuals, least):
         contacts, count, velocities = system.contacts, system.count, system.velocities
-        most = min(most, FINISHING)
+        most, before = min(most, FINISHING), speed(contacts, count, velocities)
         steps = alart_curnier(system, workspace, size, most, residuals, STIFF_ENOUGH)
         after, _ = residual(contacts, count, velocities)
         if after < least:
             keep(contacts, count, workspace)
             least = after
-        return steps, least
+        return steps, least, max(before, speed(contacts, count, velocities))
 
     end_with_rounds = kernel(end_with_rounds, spec)
 
@@ -101,14 +129,19 @@ def make_begin_again(spec: Spec) -> Any:
         if least <= enough or not are_cones(contacts, count):
             return 0
         keep(contacts, count, workspace)
+        keep_first(contacts, count, workspace)
+        keep_velocities(velocities, workspace, size, OF_BEFORE)
+        usual, peak, tried = speed(contacts, count, velocities), 0.0, 0.0
         made, steps = 0, 0
         for strategy in (LONG_STEPS, SHORT_STEPS):
             if not least <= enough:
                 made += from_inside(
                     system, workspace, size, min(most, float(MOST)), strategy, tolerance
                 )
-                steps, least = end_with_rounds(system, workspace, size, most, residuals, least)
-                made += steps
+                steps, least, tried = end_with_rounds(
+                    system, workspace, size, most, residuals, least
+                )
+                made, peak = made + steps, max(peak, tried)
         for turn in range(TURNS):
             affordable = not many or (SWEEPS << turn) * count <= MOST_VISITS
             if (
@@ -118,8 +151,14 @@ def make_begin_again(spec: Spec) -> Any:
             ):
                 for _ in range(SWEEPS << turn):
                     sweep(system, params)
-                steps, least = end_with_rounds(system, workspace, size, most, residuals, least)
-                made += steps
+                steps, least, tried = end_with_rounds(
+                    system, workspace, size, most, residuals, least
+                )
+                made, peak = made + steps, max(peak, tried)
+        left, _ = residual(contacts, count, velocities)
+        if peak > LOST * usual or not left < inf:
+            put_velocities(velocities, workspace, size, OF_BEFORE)
+            put_first(contacts, count, workspace)
         for c in range(count):
             best = workspace.inside[c]
             n, one, two = best[BEST_N], best[BEST_1], best[BEST_2]

@@ -15,6 +15,7 @@ import numpy as np
 from ...anderson import FixedPoint, allocate_fixed_point
 from ...compile import inner
 from ...records import F8, Field, dtype
+from .kept_velocities import PLACES
 
 DOF = 6
 # Of the six rows of a body: its velocity along world x, y, z, its angular velocity about them.
@@ -23,6 +24,8 @@ X, Y, Z, WX, WY, WZ = range(DOF)
 # those along the normal and the tangents.
 OF_A, OF_B, SCALED = 0, 3, 6
 N, T1, T2 = range(3)
+# Columns of `Envelope.inside`: three of `inside_cones`, six of `begin_again`.
+INSIDE = 9
 # Mass [kg] and world inertia [kg m^2] of a body.
 MASS: Final[list[Field]] = [(name, F8) for name in ("m", "xx", "xy", "xz", "yy", "yz", "zz")]
 
@@ -45,8 +48,8 @@ class Envelope(NamedTuple):
     rows: np.ndarray  # (9, 6) rows n, t1, t2 of one contact: body A's, body B's, and scaled
     shifts: FixedPoint  # (contacts,), see `shifts`
     upper: np.ndarray  # (capacity,) entries above the diagonal by columns, as `values`; see `lu`
-    inside: np.ndarray  # (contacts, 6) see `inside_cones`; (0, 6) where it is not used
-    kept: np.ndarray  # (2, bodies, 6) velocities, see `kept_velocities`
+    inside: np.ndarray  # (contacts, INSIDE), see `inside_cones`; no rows where it is not used
+    kept: np.ndarray  # (PLACES, bodies, 6) velocities, see `kept_velocities`
     packed: Any = ()  # what sweeps between two calls work in, where they pack contacts
     elimination: Any = ()  # see `supernodes`, where bodies may be eliminated in another order
 
@@ -82,8 +85,8 @@ def allocate_envelope(
         np.zeros((9, DOF)),
         allocate_fixed_point(contacts),
         np.zeros(upper),
-        np.zeros((inside, 6)),
-        np.zeros((2, bodies, DOF)),
+        np.zeros((inside, INSIDE)),
+        np.zeros((PLACES, bodies, DOF)),
         packed,
         elimination,
     )

@@ -39,6 +39,13 @@ from .cone_scaling import (
 )
 from .envelope import DOF, OF_A, OF_B, T1, T2
 from .factor import make_solve_lu
+from .kept_velocities import (
+    LOST,
+    OF_START,
+    make_keep_velocities,
+    make_put_velocities,
+    make_speed,
+)
 from .matrix import make_assemble_and_factorise
 from .method import make_keep, make_restore, make_set_impulse
 from .minimise import make_assemble_mass, make_body_of, make_directional_derivative
@@ -94,14 +101,15 @@ def make_contact_velocity(spec: Spec) -> Any:
 
 
 def make_begin_inside(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, velocities, workspace)`: contacts on their cones' axes."""
+    """Return `kernel(contacts, count, velocities, workspace)`: contacts on their cones' axes.
+
+    From impulses of 0.
+    """
     velocity_of, set_impulse = make_contact_velocity(spec), make_set_impulse(spec)
     cone_point = make_cone_point(spec)
 
     def begin_inside(contacts, count, velocities, workspace):
         unit = 0.0
-        for c in range(count):
-            set_impulse(contacts[c], velocities, 0.0, 0.0, 0.0)
         for c in range(count):
             contact = contacts[c]
             n, one, two = velocity_of(contact, velocities[contact.a], velocities[contact.b])
@@ -279,6 +287,24 @@ def make_from_inside(spec: Spec) -> Any:
     choose_length, mean_and_least = make_choose_length(spec)
     set_impulse, keep = make_set_impulse(spec), make_keep(spec)
     restore_best = make_restore(spec, "best", set_impulse)
+    keep_velocities, put_velocities = make_keep_velocities(spec), make_put_velocities(spec)
+    speed = make_speed(spec)
+
+    def let_go(contacts, count, velocities):
+        for c in range(count):
+            set_impulse(contacts[c], velocities, 0.0, 0.0, 0.0)
+
+    let_go = kernel(let_go, spec)
+
+    def add_impulses(contacts, count, velocities):
+        # To velocities without any.
+        for c in range(count):
+            contact = contacts[c]
+            n, one, two = contact.lambda_n, contact.lambda_1, contact.lambda_2
+            contact.lambda_n, contact.lambda_1, contact.lambda_2 = 0.0, 0.0, 0.0
+            set_impulse(contact, velocities, n, one, two)
+
+    add_impulses = kernel(add_impulses, spec)
 
     def take(contacts, count, velocities, workspace, length):
         for c in range(count):
@@ -296,7 +322,10 @@ def make_from_inside(spec: Spec) -> Any:
     def from_inside(system, workspace, size, most, strategy, tolerance):
         contacts, count, velocities = system.contacts, system.count, system.velocities
         assemble_mass(system.bodies, size, workspace)
+        let_go(contacts, count, velocities)
+        keep_velocities(velocities, workspace, size, OF_START)
         begin_inside(contacts, count, velocities, workspace)
+        usual, peak = speed(contacts, count, velocities), 0.0
         now, least, steps, stuck, share = inf, inf, 0, 0, 1.0
         first, _ = mean_and_least(contacts, count, workspace, 0.0)
         while steps < most:
@@ -331,10 +360,14 @@ def make_from_inside(spec: Spec) -> Any:
             if left != left:
                 break
             take(contacts, count, velocities, workspace, length)
+            peak = max(peak, speed(contacts, count, velocities))
             share = 0.0 if share > 0.0 and length < JAMMED else 1.0
             stuck += length < NOWHERE
         if now > least or now != now:
             restore_best(contacts, count, velocities)
+        if peak > LOST * usual or not now < inf:
+            put_velocities(velocities, workspace, size, OF_START)
+            add_impulses(contacts, count, velocities)
         return steps
 
     return kernel(from_inside, spec)

@@ -3,7 +3,8 @@
 Rows that no velocities meet, as of a body that two others press on, have no least: each stiffer
 round of Newton's method has impulses as much larger, to 1e9 N s beside 10. Taken back, they leave
 their last digits in the velocities, which then are no sum of impulses. Where that is more than
-LOST of what moves, velocities are those that were kept.
+LOST of what moves, velocities are those that were kept; or those, and what impulses have changed by
+since.
 """
 
 from __future__ import annotations
@@ -15,8 +16,10 @@ from ...contact import make_normal_velocity
 from ...spec import Spec
 from ...step_terms import step_terms
 
-# Of `Envelope.kept`: at the start of the round, and of the best impulses so far.
-OF_START, OF_BEST = range(2)
+# Of `Envelope.kept`: at the start of the round, of the best impulses so far, and as `begin_again`
+# found them.
+OF_START, OF_BEST, OF_BEFORE = range(3)
+PLACES = 3
 # How many times as fast as all else the impulses of a round are that leave their digits [-]: half
 # of the digits of a number.
 LOST = 2.0**26

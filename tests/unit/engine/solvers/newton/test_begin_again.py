@@ -90,6 +90,28 @@ def test_what_is_no_better_is_taken_back(better: bool, near: bool, monkeypatch) 
     np.testing.assert_allclose(stacked(drawn.scene.velocities), drawn.motion, atol=1e-12)
 
 
+@pytest.mark.parametrize("tried", [1e10, np.nan])
+def test_impulses_that_are_taken_back_leave_no_digit_behind(tried: float, monkeypatch) -> None:
+    """Impulses of so many newton seconds, by a script: 1e-16 of them is 1e-6 m/s here."""
+    drawn = drawn_system(SPEC, np.random.default_rng(5))
+    before, velocities = impulses(drawn.scene), stacked(drawn.scene.velocities)
+    set_impulse = interpreted(begin_again.make_set_impulse(SPEC))
+
+    def scripted(system: Any, *_: Any) -> int:
+        for contact in system.contacts:
+            set_impulse(contact, system.velocities, tried, 0.1 * tried, -0.1 * tried)
+        return 1
+
+    monkeypatch.setattr(begin_again, "make_from_inside", lambda _: scripted)
+    monkeypatch.setattr(begin_again, "make_alart_curnier", lambda _: lambda *_: 0)
+    monkeypatch.setattr(begin_again, "make_sweep", lambda _: lambda *_: 0.0)
+    monkeypatch.setattr(begin_again, "SWEEPS", 1)
+    solve = interpreted(begin_again.make_begin_again(SPEC))
+    solve(drawn.system, drawn.workspace, drawn.size, 400.0, (1e-11, 1e-9), PARAMS)
+    np.testing.assert_array_equal(impulses(drawn.scene), before)
+    np.testing.assert_array_equal(stacked(drawn.scene.velocities), velocities)
+
+
 def test_sweeps_go_on_where_nothing_from_inside_ends(monkeypatch) -> None:
     """By themselves to Coulomb's law, in as many as they take here; rounds would need a few."""
     drawn = drawn_system(SPEC, np.random.default_rng(5))

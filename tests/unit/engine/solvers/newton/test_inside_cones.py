@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+from itertools import chain, repeat
 from typing import Any
 
 import numpy as np
@@ -69,3 +71,33 @@ def test_a_step_solves_the_linear_equations(steps: int, share: float) -> None:
         inverse = np.array([1.0, -1.0, -1.0]) * x / (x[0] ** 2 - x[1] ** 2 - x[2] ** 2)
         back = interpreted(unscaled)(scaling, 0.0, Vec3(*(aim * inverse - z - dz)))
         np.testing.assert_allclose(back, dx, atol=1e-7)
+
+
+@pytest.mark.parametrize("tried", [1e10, np.nan])
+def test_steps_that_are_taken_back_leave_no_digit_behind(tried: float, monkeypatch) -> None:
+    """Steps of so many newton seconds, by a script, after which the beginning is the best.
+
+    Added and taken back they leave 1e-16 of themselves: 1e-6 m/s, of bodies of a kilogram.
+    """
+
+    def scripted(contacts: Any, *_: Any) -> None:
+        for contact in contacts:
+            contact.step_n = contact.step_1 = contact.step_2 = tried
+
+    monkeypatch.setattr(inside_cones, "make_find_direction", lambda _: scripted)
+    lengths = (lambda *_: (1.0, 0.5)), (lambda *_: (1.0, 1.0))
+    monkeypatch.setattr(inside_cones, "make_choose_length", lambda _: lengths)
+    found = []
+    for enough in (1.0, 0.0):  # the beginning is enough, or nothing is
+        left = chain((1.0,), repeat(tried))
+        residual = partial(next, left)
+        monkeypatch.setattr(
+            inside_cones, "make_residual", lambda _, r=residual: lambda *_: (r(), 0)
+        )
+        drawn = drawn_system(SPEC, np.random.default_rng(1))
+        solve = interpreted(inside_cones.make_from_inside(SPEC))
+        steps = solve(drawn.system, drawn.workspace, drawn.size, 3.0, LONG_STEPS, enough)
+        assert (steps > 0) == (enough == 0.0)
+        found.append((impulses(drawn.scene), stacked(drawn.scene.velocities)))
+    np.testing.assert_array_equal(*(one for one, _ in found))
+    np.testing.assert_array_equal(*(other for _, other in found))
