@@ -29,11 +29,11 @@ from .midpoint_mixing import NO_PASS, make_mix_velocities
 from .midpoint_rows import (
     SAME,
     make_begin_slip,
-    make_is_turning,
     make_lasting,
     make_resist,
     make_shift,
 )
+from .midpoint_turning import make_is_turning
 from .parts import make_forget_history
 from .residual import make_residual
 from .rotation import inertia_times, inverse_inertia_times, is_round

@@ -11,13 +11,12 @@ from math import sqrt
 from typing import Any
 
 from .block import make_relative_velocity, make_slip_velocity
-from .collide.records import UNBOUNDED
 from .collide.shapes import make_is_inside
 from .compile import kernel
 from .contact import make_normal_velocity
 from .effects import made_once
 from .joint_turn import make_joint_velocity
-from .records import PLANE, SPHERE
+from .records import PLANE
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
@@ -62,53 +61,6 @@ def make_is_moving(spec: Spec) -> Any:
         return False
 
     return kernel(is_moving, spec)
-
-
-def make_is_turning(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, bodies, motion, params) -> whether the geometry changes`.
-
-    A ball's own spin changes none, where nothing else of it turns with its frame.
-    """
-    turns, ropes = step_terms(spec).turns, row_terms(spec).taut
-    rolls = turns and not spec.connects and not step_terms(spec).uneven
-    rolls = rolls and not row_terms(spec).stretched and not row_terms(spec).elastic
-    rolls = rolls and not spec.has("surface_velocity") and not spec.has("varying_force")
-
-    def spins(body, m):
-        speed = sqrt(m.wx * m.wx + m.wy * m.wy + m.wz * m.wz)
-        if rolls:
-            if body.shape == SPHERE:
-                return 0.0
-        return speed
-
-    spins = kernel(spins, spec)
-
-    def is_turning(contacts, count, bodies, motion, params):
-        for c in range(count):
-            contact = contacts[c]
-            ma, mb = motion[contact.a], motion[contact.b]
-            x, y, z = mb.vx - ma.vx, mb.vy - ma.vy, mb.vz - ma.vz
-            speed = sqrt(x * x + y * y + z * z)
-            body_a, body_b = bodies[contact.a], bodies[contact.b]
-            rate, size = 0.0, UNBOUNDED
-            if body_a.shape != PLANE:
-                size = body_a.bound
-            if body_b.shape != PLANE:
-                size = min(size, body_b.bound)
-            if body_a.shape != PLANE and body_b.shape != PLANE:
-                rate = speed / size
-            if ropes:
-                if contact.span > 0.0:
-                    rate = max(rate, speed / contact.span)
-            if turns:
-                spin = spins(body_a, ma) + spins(body_b, mb)
-                rate += spin
-                speed += spin * size
-            if rate * speed * params.dt > SAME:
-                return True
-        return False
-
-    return kernel(is_turning, spec)
 
 
 def make_lasting(spec: Spec) -> Any:

@@ -138,7 +138,7 @@ def make(spec: Spec):
     sweeps = row_terms(spec).swept
     is_fast: Any = make_is_fast(spec) if sweeps else None
     # Images of a periodic cell are nearer than bodies' own places.
-    culls = sweeps and not (spec.has("broad_phase") or spec.has("periodic_boundary"))
+    culls = sweeps and not (has_hook(spec, "find_pairs") or step_terms(spec).periodic)
     is_apart: Any = make_is_apart(spec) if culls else None
     swept_manifold: Any = None
     if sweeps:

@@ -116,7 +116,7 @@ def make_order(spec: Spec) -> Any:
     from ..motor_reach import make_first_reach, reaches_speeds
     from ..row_terms import make_is_soft, row_terms
     from ..stiff_springs import may_rebound
-    from . import made_once
+    from . import has_hook, made_once
 
     expect, depth = make_expect(spec), make_depth(spec)
     approach, foresee, follow = make_approach(spec), make_foresee(spec), make_follow(spec)
@@ -134,7 +134,7 @@ def make_order(spec: Spec) -> Any:
     driven = reaches_speeds(spec)
     first_reach: Any = make_first_reach(spec) if driven else None
     # Where no motor starts anything and no surface moves in its body, what is still stays so.
-    rests, is_still = not driven and not spec.has("surface_velocity"), make_is_still(spec)
+    rests, is_still = not driven and not has_hook(spec, "surface_velocity"), make_is_still(spec)
 
     def first_due(contacts, count):
         first, due = -1, NEVER

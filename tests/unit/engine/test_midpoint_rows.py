@@ -26,7 +26,7 @@ from lavendersim.engine.midpoint_rows import (
     TURNED,
 )
 from lavendersim.engine.record_layout import allocate_bodies, allocate_velocities
-from lavendersim.engine.records import BOX, MOTION, PLANE, SPHERE, dtype
+from lavendersim.engine.records import MOTION, PLANE, SPHERE, dtype
 from lavendersim.engine.spec import Spec
 
 EFFECTS = ("contact_midpoint", "friction", "impact_order", "impact_time", "rotation")
@@ -249,44 +249,6 @@ def test_what_moves_slower_than_solves_leave_is_still() -> None:
         assert is_moving(vx=0.6 * share * STILL, vz=-0.8 * share * STILL) == moves
     assert not is_moving(PLANE, wx=1.0)
     assert is_moving(PLANE, vx=1.0)
-
-
-TURNING = interpreted(midpoint_rows.make_is_turning(SPEC))
-
-
-def turning_along(
-    axes: tuple[str, str], shapes: Any, velocities: Any, spins: Any, kernel: Any = TURNING
-) -> bool:
-    scene = drawn(SPEC, np.random.default_rng(3), [(0, 1)], fixed=())
-    motion = np.zeros(2, dtype(MOTION))
-    scene.bodies["shape"], scene.bodies["bound"] = shapes, [0.2, 0.5]
-    for axis, along in zip(axes, (velocities, spins), strict=True):
-        motion[axis] = along
-    arrays = (scene.bodies, motion)
-    return bool(kernel(records(scene.contacts), 1, *(records(a) for a in arrays), PARAMS))
-
-
-@pytest.mark.parametrize("axes", [("vx", "wz"), ("vy", "wx"), ("vz", "wy")])
-def test_geometry_changes_by_what_turns_and_by_bodies_that_go_round_each_other(axes: Any) -> None:
-    """By (v/r + w) (v + w r) dt in the step, with the radius of the lesser."""
-
-    def turning(*given: Any) -> bool:
-        return turning_along(axes, *given)
-
-    balls, plane = (SPHERE, SPHERE), (PLANE, SPHERE)
-    for share, turns in ((1.0 - 1e-6, False), (1.0 + 1e-6, True)):
-        v = np.sqrt(share * SAME * 0.2 / DT)
-        assert turning(balls, (v, 2.0 * v), (0.0, 0.0)) == turns
-        w = np.sqrt(share * SAME / DT / 0.2)
-        assert turning((BOX, BOX), (1.0, 1.0), (-0.5 * w, 0.5 * w)) == turns
-        assert not turning(balls, (1.0, 1.0), (-0.5 * w, 0.5 * w))
-        # Past a plane: w (v + w r), r of the ball.
-        w = 1e-4
-        v = share * SAME / DT / w - w * 0.5
-        assert turning(plane, (0.0, v), (w, 0.0)) == turns
-    assert not turning(plane, (0.0, 100.0), (0.0, 0.0))
-    straight = interpreted(midpoint_rows.make_is_turning(STRAIGHT))
-    assert not turning(plane, (0.0, 1.0), (9.0, 9.0), straight)
 
 
 BEGIN_SLIP = interpreted(midpoint_rows.make_begin_slip(SPEC))
