@@ -18,21 +18,22 @@ from .step_terms import step_terms
 def make_is_turning(spec: Spec) -> Any:
     """Return `kernel(contacts, count, bodies, motion, params) -> whether the geometry changes`.
 
-    A ball's own spin changes none, where nothing else of it turns with its frame.
+    A ball's own spin turns no row, where nothing else of it turns with its frame; but what its rows
+    are of is faster by it.
     """
     turns, ropes = step_terms(spec).turns, row_terms(spec).taut
     rolls = turns and not spec.connects and not step_terms(spec).uneven
     rolls = rolls and not row_terms(spec).stretched and not row_terms(spec).elastic
     rolls = rolls and not has_hook(spec, "surface_velocity") and not has_hook(spec, "drive")
 
-    def spins(body, m):
+    def turns_rows(body, m):
         speed = sqrt(m.wx * m.wx + m.wy * m.wy + m.wz * m.wz)
         if rolls:
             if body.shape == SPHERE:
                 return 0.0
         return speed
 
-    spins = kernel(spins, spec)
+    turns_rows = kernel(turns_rows, spec)
 
     def is_turning(contacts, count, bodies, motion, params):
         for c in range(count):
@@ -52,8 +53,9 @@ def make_is_turning(spec: Spec) -> Any:
                 if contact.span > 0.0:
                     rate = max(rate, speed / contact.span)
             if turns:
-                spin = spins(body_a, ma) + spins(body_b, mb)
-                rate += spin
+                rate += turns_rows(body_a, ma) + turns_rows(body_b, mb)
+                spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
+                spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
                 speed += spin * size
             if rate * speed * params.dt > SAME:
                 return True

@@ -95,7 +95,9 @@ def make_lay_bodies(spec: Spec) -> Any:
         for i in range(bodies.shape[0]):
             if bodies[i].inv_m > 0.0:
                 layer = (along(bodies[i], axis) - low) * per_layer
-                slabs.body_layer[i] = int(min(max(layer, 0.0), LAYERS - 1.0))
+                slabs.body_layer[i] = 0
+                if layer > 0.0:  # no number lies in the first, too
+                    slabs.body_layer[i] = int(min(layer, LAYERS - 1.0))
             else:
                 slabs.body_layer[i] = LAYERS
 

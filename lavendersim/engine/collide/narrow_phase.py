@@ -187,11 +187,11 @@ def make(spec: Spec):
                 if springs:
                     if is_soft(pairs[p]):
                         margin = max(margin, widest)
-            if culls:
-                if is_apart(bodies[i], bodies[j], margin):
-                    continue
             if sweeps:
                 d = displacement(motion[owner_i], motion[owner_j], share, dt)
+                if culls:
+                    if is_apart(bodies[i], bodies[j], d, margin):
+                        continue
                 fast = is_fast(bodies[i], bodies[j], d)
                 if fast:
                     count, until_impact = swept_manifold(

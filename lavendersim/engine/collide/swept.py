@@ -62,15 +62,17 @@ class Impact(NamedTuple):
 
 
 def make_is_apart(spec: Spec):
-    """Return `kernel(a, b, margin)`: whether no swept contact of these two can be within a margin.
+    """Return `kernel(a, b, d, margin)`: whether no swept contact of these two is within a margin.
 
-    Between here and there they move by a margin at most. Never with what is not fast, see below.
+    For displacements d of a margin at most, and never with what is not fast, see below.
     """
     has_size = _make_has_size(spec)
 
-    def is_apart(a, b, margin):
-        d, reach = minus(position(b), position(a)), a.bound + b.bound + 2.0 * margin
-        return dot(d, d) > reach * reach and has_size(a) and has_size(b)
+    def is_apart(a, b, d, margin):
+        way, reach = minus(position(b), position(a)), a.bound + b.bound + 2.0 * margin
+        if dot(way, way) > reach * reach and dot(d, d) <= margin * margin:
+            return has_size(a) and has_size(b)
+        return False
 
     return kernel(is_apart, spec)
 

@@ -122,9 +122,9 @@ def make(spec: Spec) -> Iteration:
                 if most > LAST:
                     most -= LAST
                 most = min(most, carry.look - sweeps)
-            greatest, change, packing = sweep(
-                system, workspace.packed, params, packing, most, carry.greatest > FAR * carry.aim
-            )
+            # What rests lets go of its first change in the second sweep.
+            far = sweeps > FIRST and carry.greatest > FAR * carry.aim
+            greatest, change, packing = sweep(system, workspace.packed, params, packing, most, far)
         else:
             greatest = sweep(system, params)
             change = greatest

@@ -56,5 +56,9 @@ def test_geometry_changes_by_what_turns_and_by_bodies_that_go_round_each_other(a
         v = share * SAME / DT / w - w * 0.5
         assert turning(plane, (0.0, v), (w, 0.0)) == turns
     assert not turning(plane, (0.0, 100.0), (0.0, 0.0))
+    # A ball that spins on a plane turns no row; round another ball v/r of it does, by v + w r.
+    assert not turning(plane, (0.0, 1e-4), (0.0, 300.0))
+    assert turning(balls, (0.0, 1e-4), (0.0, 300.0))
+    assert not turning(balls, (0.0, 1e-4), (0.0, 0.0))
     straight = interpreted(midpoint_turning.make_is_turning(STRAIGHT))
     assert not turning(plane, (0.0, 1.0), (9.0, 9.0), straight)

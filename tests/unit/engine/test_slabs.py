@@ -43,7 +43,9 @@ def test_layers_follow_the_longest_axis_wherever_the_scene_is(axis: int, rng) ->
     assert np.abs(far - layers).max() <= 1  # but for the last digits of places
 
 
-@pytest.mark.parametrize("places", [np.ones((4, 3)), np.eye(3) * 1e200, np.zeros((0, 3))])
+@pytest.mark.parametrize(
+    "places", [np.ones((4, 3)), *(np.eye(3) * far for far in (2e154, 1e200)), np.zeros((0, 3))]
+)
 def test_bodies_without_a_spread_that_is_a_number_lie_in_one_layer(places: np.ndarray) -> None:
     assert not laid(places).any()
 

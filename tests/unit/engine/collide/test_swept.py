@@ -15,6 +15,7 @@ from sweeps import DT, Pair
 from lavendersim.engine.collide.swept import make_is_apart
 from lavendersim.engine.records import PLANE, SPHERE, TOUCHING
 from lavendersim.engine.spec import Spec
+from lavendersim.engine.vectors import Vec3
 
 SPEED, RADIUS = 100.0, 0.05  # [m/s], [m]
 WALL = (0.01, 1.0, 1.0)  # half edges [m]: 20 mm thick
@@ -44,16 +45,18 @@ def test_a_sphere_at_100_m_per_s_meets_a_thin_wall_at_every_phase(phase):
 
 
 def test_only_balls_that_no_displacement_brings_together_are_apart() -> None:
-    """Of 0.2 and 0.3 m, each moving by half a margin: |x_B - x_A| > 0.2 + 0.3 + 2 x 0.1 m."""
+    """Of 0.2 and 0.3 m, moving by a margin: |x_B - x_A| > 0.2 + 0.3 + 2 x 0.1 m."""
     is_apart = interpreted(make_is_apart(Spec(("fast_bodies",), ("sphere_plane", "sphere_sphere"))))
 
     def ball(x, bound, shape=SPHERE):
         return one_row(shape=shape, bound=bound, **vector_fields("", (x, 0.0, 0.0)))
 
     for distance, apart in ((0.6999, False), (0.7001, True)):
-        assert is_apart(ball(0.0, 0.2), ball(distance, 0.3), 0.1) == apart
-        assert is_apart(ball(distance, 0.2), ball(0.0, 0.3), 0.1) == apart
-    assert not is_apart(ball(0.0, 0.0, PLANE), ball(9.0, 0.3), 0.1)
+        near, far = Vec3(0.0, 0.1, 0.0), Vec3(0.0, 0.1001, 0.0)
+        assert is_apart(ball(0.0, 0.2), ball(distance, 0.3), near, 0.1) == apart
+        assert is_apart(ball(distance, 0.2), ball(0.0, 0.3), near, 0.1) == apart
+        assert not is_apart(ball(0.0, 0.2), ball(distance, 0.3), far, 0.1)
+    assert not is_apart(ball(0.0, 0.0, PLANE), ball(9.0, 0.3), near, 0.1)
 
 
 @pytest.mark.parametrize("angle", np.radians([10.0, 45.0, 80.0]))
