@@ -22,7 +22,6 @@ PALETTE = ((0, 114, 178), (230, 159, 0), (0, 158, 115), (204, 121, 167), (240, 2
 STATIC_COLOUR = (170, 170, 170)
 # A viewer makes an entity of each primitive. Hulls have dozens; beyond this they are left out.
 MOST_VISUALS = 20_000
-LARGEST = float(np.finfo(float).max)  # of what is farther than the root of it the square is none
 SPECIAL: Final = frozenset("&<>\"'\n\r\t")  # in XML's attributes
 
 
@@ -74,9 +73,7 @@ def _described(bodies: Mapping[str, CellBody], poses: Matrix) -> str:
 
 def _plane_side(poses: Matrix) -> float:
     """Return the side of drawn planes [m]: four times as far as any body stands from the origin."""
-    with np.errstate(over="ignore"):
-        side = 4.0 * max([0.5, *(float(np.linalg.norm(pose[:3])) for pose in poses)])
-    return min(side, LARGEST)
+    return 4.0 * max([0.5, *(float(np.linalg.norm(pose[:3])) for pose in poses)])
 
 
 def _joint(parent: str, child: str, kind: str) -> list[str]:
