@@ -47,6 +47,8 @@ def convex_hull(points: Sequence[Vector3]) -> Polyhedron:
     loops = [_loop(points, members, normal, extent) for normal, members in groups]
     # Of points on an edge that are a rounding off it, Qhull makes triangles that turn anyhow.
     loops = [loop for loop in loops if len(loop) > 2]
+    if not loops:  # of a needle each is a line, to a rounding
+        raise FlatError
     used = sorted({corner for loop in loops for corner in loop})
     corners = tuple(points[corner] for corner in used)
     number = {corner: row for row, corner in enumerate(used)}

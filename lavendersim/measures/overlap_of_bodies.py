@@ -43,7 +43,12 @@ def unknown_overlap(scene: CellScene) -> str:
 
 
 def overlap_of_rows(trace: Trace, rows: Any) -> Floats:
-    """Return the deepest penetration [m] of any two bodies in each of these rows of the log."""
+    """Return the deepest penetration [m] of any two bodies in each of these rows of the log.
+
+    NaN in a periodic cell: bodies overlap across its faces, too, which is not looked for.
+    """
+    if trace.config.scene.periodic is not None:
+        return np.full(len(rows), NAN)
     solids, grounds = solids_of(trace.config.scene, list(trace.bodies))
     poses = trace.pose
     deepest = np.zeros(len(rows))

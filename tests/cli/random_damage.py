@@ -228,15 +228,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     for name, count in (("--flips", 1000), ("--cuts", 200), ("--exchanges", 50), ("--seed", 0)):
         parser.add_argument(name, type=int, default=count)
+    parser.add_argument("--kinds", nargs="+", choices=list(KINDS), default=list(KINDS))
     asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        for kind in KINDS:
+        for kind in asked.kinds:
             counts = counted(
                 kind, Path(folder) / kind, asked.flips, asked.cuts, asked.exchanges, asked.seed
             )
             for what, found in counts.items():
                 print(
-                    f"{kind:16} {what:9}", ", ".join(f"{k} {n}" for k, n in sorted(found.items()))
+                    f"{kind:16} {what:9}",
+                    ", ".join(f"{k} {n}" for k, n in sorted(found.items())),
+                    flush=True,
                 )
 
 

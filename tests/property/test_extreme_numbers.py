@@ -76,3 +76,15 @@ def test_a_speed_of_any_size_runs_to_an_end(key: str, tmp_path: Path) -> None:
     text = DROP.replace(f"{MASS}\n", f"{MASS}\n      {key}\n")
     end = outcome(text, tmp_path, WidePlans().of("drop"))
     assert end.kind in ("complete", "ended early")
+
+
+@pytest.mark.parametrize("phase", ["1e60", "1e300", "1.7976931348623157e308"])
+def test_a_start_that_is_too_far_is_refused_with_its_place(phase: str) -> None:
+    text = DROP.replace("clearance: 0.1}", f"clearance: 0.1, phase: {phase}}}")
+    with pytest.raises(ConfigError) as caught:
+        load_experiment_text(text, NAME).cells()
+    (defect,) = caught.value.defects
+    begin = text.index(phase)
+    place = (text[:begin].count("\n") + 1, begin - text.rfind("\n", 0, begin))
+    assert (defect.line, defect.column) == place
+    assert "expected a shift of 1e+50 m or less" in defect.message

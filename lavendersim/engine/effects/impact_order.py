@@ -133,8 +133,8 @@ def make_order(spec: Spec) -> Any:
     stops, first_stop = made_once(spec, "first_stop")
     driven = reaches_speeds(spec)
     first_reach: Any = make_first_reach(spec) if driven else None
-    # Where no motor starts anything and no surface moves in its body, what is still stays so; a rope
-    # may be tied farther out than a body reaches.
+    # Where no motor starts anything and no surface moves in its body, what is still stays so. Ropes
+    # may be tied farther out than their bodies reach.
     rests = not driven and not ropes and not has_hook(spec, "surface_velocity")
     is_still = make_is_still(spec)
 

@@ -7,6 +7,7 @@ others texture and normal, which a surface of triangles does not have.
 from __future__ import annotations
 
 import re
+from codecs import BOM_UTF8
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import Final
@@ -30,7 +31,7 @@ def read_obj(raw: bytes) -> FileTriangles:
 
     Raises MeshFileError at the line of what is wrong.
     """
-    read = FileTriangles()
+    read, raw = FileTriangles(), raw.removeprefix(BOM_UTF8)
     for line, (word, *values) in _statements(raw):
         if word == b"v":
             read.add_vertex(_place(values, line), line)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import struct
+from codecs import BOM_UTF8
 from collections.abc import Iterator
 from typing import Final
 
@@ -34,8 +35,9 @@ def read_stl(raw: bytes) -> FileTriangles:
     count = int.from_bytes(raw[80:HEADER], "little") if len(raw) >= HEADER else None
     if count is not None and len(raw) == HEADER + count * _FACET.size:
         return _of_bytes(raw, count)
-    if raw.lstrip()[:5].lower() == b"solid":
-        return _of_text(raw)
+    text = raw.removeprefix(BOM_UTF8)
+    if text.lstrip()[:5].lower() == b"solid":
+        return _of_text(text)
     if count is None:
         sentence = f"expected the word solid, or {HEADER} bytes or more, found {len(raw)} bytes"
         raise MeshFileError(sentence)

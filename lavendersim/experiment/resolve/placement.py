@@ -19,7 +19,7 @@ from lavendersim.cell.shapes import CellCompound, CellSimple, Plane
 from lavendersim.experiment.text.node import Path
 from lavendersim.geometry.support import extent_against
 from lavendersim.geometry.vectors import dot, unit
-from lavendersim.quantities.quantity import Quaternion, Vector3
+from lavendersim.quantities.quantity import LARGEST, OF_64_BITS, Quaternion, Vector3
 
 
 class SceneError(ValueError):
@@ -63,7 +63,13 @@ def released_position(
         if pull <= 0.0:
             sentence = f"gravity does not pull towards {release.above}, so that there is no impact"
             raise SceneError(("release", "phase"), f"phase: {sentence} to shift; leave it out")
-        gap += float(release.phase * timestep) * math.sqrt(2.0 * pull * release.clearance)
+        try:
+            gap += float(release.phase * timestep) * math.sqrt(2.0 * pull * release.clearance)
+        except OverflowError:
+            gap = math.inf
+        if not gap <= LARGEST:
+            sentence = f"expected a shift of {LARGEST:g} m or less{OF_64_BITS}"
+            raise SceneError(("release", "phase"), f"phase: {sentence}")
     distance = plane.offset + extent_against(shape, orientation, normal) + gap
     nx, ny, nz = normal
     if release.at is None:

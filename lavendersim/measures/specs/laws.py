@@ -60,7 +60,10 @@ class EnergyGain(_EnergyChange):
 
 
 class AngularMomentumDrift(Measure):
-    """Largest |L - L0| / |L0| [-] of the scene's angular momentum vector over the run."""
+    """Largest |L - L0| / |L0| [-] of the scene's angular momentum vector over the run.
+
+    A periodic cell does not keep it: what acts across a face turns it by a period times the force.
+    """
 
     READS = SUMS
     NO_NUMBER = "nothing turns"

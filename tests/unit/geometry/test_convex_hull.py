@@ -114,6 +114,8 @@ def test_faces_of_a_turned_cylinder_stay_whole() -> None:
         [(float(x), float(y), 0.0) for x in (0, 1) for y in (0, 1)],
         [(float(x), float(y), 1e-7 * x * y) for x in (0, 1) for y in (0, 1)],
         [(x, y, 0.5 * x + 0.3 * y) for x in (0.0, 1.0) for y in (0.0, 1.0, 2.0)],
+        # A needle of 6e12 m, 1 m thick: every face is a line, to a rounding.
+        [(0.0, 5.99e12, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.1, 0.1, 0.1)],
     ],
 )
 def test_points_without_volume_are_refused(points) -> None:

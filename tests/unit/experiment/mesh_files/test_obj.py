@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from codecs import BOM_UTF8
+
 import pytest
 
 from lavendersim.experiment.mesh_files.obj import read_obj
@@ -14,6 +16,10 @@ def test_a_convex_polygon_is_cut_from_its_first_corner() -> None:
     read = read_obj(SQUARE + b"f 2 3 4 1\n")
     assert read.triangles == [(1, 2, 3), (1, 3, 0)]
     assert read.triangle_lines == [5, 5]
+
+
+def test_a_mark_of_utf_8_is_no_statement() -> None:
+    assert read_obj(BOM_UTF8 + SQUARE + b"f 1 2 3 4\n").vertices[1] == (1.0, 0.0, 0.0)
 
 
 def test_numbers_count_back_and_texture_and_normals_are_left_out() -> None:

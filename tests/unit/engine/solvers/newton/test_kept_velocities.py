@@ -69,6 +69,38 @@ def test_what_newton_takes_back_leaves_no_digit_of_it_behind(rng, monkeypatch) -
         np.testing.assert_array_equal(scene.motion, free)
 
 
+@pytest.mark.parametrize("kept", [False, True])
+def test_what_newton_takes_back_leaves_no_billionth_of_what_moves(kept, rng, monkeypatch) -> None:
+    """Impulses of any size, of rounds that are gone on from or not, and none is the best.
+
+    Below 2^20 of what moves, the largest are set and taken back on two rows, and each of these four
+    updates rounds by 2^-54 of it.
+    """
+    speed, speeds = interpreted(make_speed(SPEC)), []
+
+    def worse(contacts, count, velocities):
+        speeds.append(speed(contacts, count, velocities))
+        return 1.0 if len(speeds) == 1 else 2.0 if kept else 10.0, 0
+
+    monkeypatch.setattr(method, "make_residual", lambda _: worse)
+    newton = interpreted(make_newton(SPEC))
+    ratios = []
+    for exponent in range(-14, 16, 3):
+        speeds.clear()
+        scene = squeezed(rng, [(1, 2), (1, 2)])
+        scene.contacts["target"] = -(2.0**exponent)
+        bodies, velocities, contacts = views(scene)
+        workspace = records(allocate_envelope(3, 2, 2000))
+        system = ContactSystem(contacts, None, 2, bodies, velocities)
+        size, _ = interpreted(step_cost)(system, workspace)
+        free = scene.motion
+        newton(system, workspace, size, 60.0, 1e-9, True)
+        assert scene.contacts["lambda_n"].tolist() == [0.0, 0.0]
+        np.testing.assert_allclose(scene.motion, free, rtol=0.0, atol=2.0**-32 * speeds[0])
+        ratios.append(max(speeds) / speeds[0])
+    assert min(ratios) < 2.0**20 < sorted(ratios)[-2]
+
+
 @pytest.mark.parametrize("place", [OF_START, OF_BEST])
 def test_velocities_are_put_back_to_the_bit(place: int, rng) -> None:
     scene = drawn(SPEC, rng, [(0, 1), (1, 2)])
