@@ -7,33 +7,16 @@ from typing import Any
 
 from .collide.records import UNBOUNDED
 from .compile import kernel
-from .effects import has_hook
 from .midpoint_rows import SAME
-from .records import PLANE, SPHERE
+from .records import PLANE
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
 
 
 def make_is_turning(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, bodies, motion, params) -> whether the geometry changes`.
-
-    A ball's own spin turns no row, where nothing else of it turns with its frame; but what its rows
-    are of is faster by it.
-    """
+    """Return `kernel(contacts, count, bodies, motion, params) -> whether the geometry changes`."""
     turns, ropes = step_terms(spec).turns, row_terms(spec).taut
-    rolls = turns and not spec.connects and not step_terms(spec).uneven
-    rolls = rolls and not row_terms(spec).stretched and not row_terms(spec).elastic
-    rolls = rolls and not has_hook(spec, "surface_velocity") and not has_hook(spec, "drive")
-
-    def turns_rows(body, m):
-        speed = sqrt(m.wx * m.wx + m.wy * m.wy + m.wz * m.wz)
-        if rolls:
-            if body.shape == SPHERE:
-                return 0.0
-        return speed
-
-    turns_rows = kernel(turns_rows, spec)
 
     def is_turning(contacts, count, bodies, motion, params):
         for c in range(count):
@@ -53,9 +36,9 @@ def make_is_turning(spec: Spec) -> Any:
                 if contact.span > 0.0:
                     rate = max(rate, speed / contact.span)
             if turns:
-                rate += turns_rows(body_a, ma) + turns_rows(body_b, mb)
                 spin = sqrt(ma.wx * ma.wx + ma.wy * ma.wy + ma.wz * ma.wz)
                 spin += sqrt(mb.wx * mb.wx + mb.wy * mb.wy + mb.wz * mb.wz)
+                rate += spin
                 speed += spin * size
             if rate * speed * params.dt > SAME:
                 return True
