@@ -56,6 +56,7 @@ CONSTANTS = {
     "overlooked_points.DEEP": (1, 0),
     "solvers.iteration.NOTHING": (1, -1),
     "solvers.newton.least_norm.SHARP": (1, -1),
+    "tangential_springs.SHALLOW": (1, 0),
 }
 
 

@@ -24,4 +24,4 @@ def test_whichever_call_fails_it_is_said_and_nothing_is_half_done(tmp_path: Path
     assert done.returncode == 0, done.stdout
     assert done.stdout.endswith("0 with something wrong\n")
     failed = int(done.stdout.splitlines()[-2].split()[0])
-    assert failed > 30
+    assert failed > 20  # every 13th of some 390

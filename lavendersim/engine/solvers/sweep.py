@@ -7,7 +7,7 @@ from typing import Any
 from .. import ordering
 from ..compile import kernel
 from ..prefetch import AHEAD, prefetch
-from ..slabs import has_slabs
+from ..slabs import FEWEST_CONTACTS, has_slabs
 from ..spec import Spec
 from .row_update import make_solve_contact_velocity
 
@@ -27,7 +27,8 @@ def make_sweep(spec: Spec):
         greatest = 0.0
         for c in range(system.count):
             if asks:
-                prefetch(contacts, order[min(c + AHEAD, system.count - 1)])
+                if system.count >= FEWEST_CONTACTS:
+                    prefetch(contacts, order[min(c + AHEAD, system.count - 1)])
             contact = contacts[order[c]]
             change = solve_contact_velocity(contact, contacts, velocities, params)
             # A NaN is greater than anything.
