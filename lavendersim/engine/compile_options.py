@@ -83,15 +83,17 @@ def build() -> str:
     # Whatever else numba is set to: a needless compilation is cheaper than a wrong kernel.
     names = [name for name in os.environ if name.startswith("NUMBA_")]
     environment = tuple(sorted((name, os.environ[name]) for name in names))
-    return _build(_compiler_hash(), tuple(sorted(OPTIONS.items())), settings, environment)
-
-
-@cache  # it is asked for with every part
-def _build(*differing: Any) -> str:
-    parts = (
-        differing,
+    return _digest_of(
+        _compiler_hash(),
+        tuple(sorted(OPTIONS.items())),
         (numba.__version__, _llvmlite(), np.__version__, sys.version_info[:3]),
         platform.machine(),
         _processor(),
+        settings,
+        environment,
     )
+
+
+@cache  # it is asked for with every part
+def _digest_of(*parts: Any) -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:8]

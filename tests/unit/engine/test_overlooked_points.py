@@ -27,6 +27,7 @@ from lavendersim.engine.records import (
     OVERLOOKED,
     PLANE,
     SPHERE,
+    UNMADE,
     dtype,
 )
 from lavendersim.engine.spec import Spec
@@ -56,7 +57,7 @@ class Part:
         self.state = State(pairs, velocities, motion)
         self.bodies, self.pairs = bodies, pairs
         point["b"], point["x"], point["nz"], point["phi"], point["waits"] = 1, ARM, 1, gap, waits
-        self.overlooked = Overlooked(point, np.ones(1, np.int64))
+        self.overlooked = Overlooked(point, np.ones(1, np.int64), np.zeros(1, dtype(UNMADE)))
         self.parameters = allocate_parameters()
         self.parameters["dt"] = self.parameters["timestep"] = DT
 

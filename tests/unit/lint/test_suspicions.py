@@ -26,6 +26,7 @@ MEANT = {
     "hard/found/cohesion_of_what_turns.yaml",
     "hard/found/forces_beside_a_union_that_is_placed.yaml",
     "hard/found/levers_of_what_flies_past.yaml",
+    "hard/found/part_that_waits_for_room.yaml",
     "hard/found/push_ahead_of_a_stiff_spring.yaml",
     "hard/found/springs_beside_what_gives_way.yaml",
     "hard/found/sweeps_of_a_step_solved_anew.yaml",
