@@ -42,10 +42,9 @@ FEWER_TURNS, NEAR = 4, 10.0
 # Visits of a turn at most where bodies are many: what this solves is rare, and a large scene's
 # turns would take minutes.
 MOST_VISITS = 10_000_000
-# Columns of `Envelope.inside` behind those of `inside_cones`: the best impulses, and those that it
-# began with [N s].
-BEST_N, BEST_1, BEST_2 = range(3, 6)
-FIRST_N, FIRST_1, FIRST_2 = range(6, 9)
+# Columns of `Envelope.inside` behind those of `inside_cones`, along n, t1 and t2: best impulses,
+# and those that it began with [N s].
+BEST, FIRST = 3, 6
 
 
 def make_are_cones(spec: Spec) -> Any:
@@ -86,27 +85,19 @@ def make_begin_again(spec: Spec) -> Any:
     keep_velocities, put_velocities = make_keep_velocities(spec), make_put_velocities(spec)
     speed = make_speed(spec)
 
-    def keep(contacts, count, workspace):
+    def keep(contacts, count, workspace, at):
         for c in range(count):
             contact, kept = contacts[c], workspace.inside[c]
-            kept[BEST_N] = contact.lambda_n
-            kept[BEST_1], kept[BEST_2] = contact.lambda_1, contact.lambda_2
+            kept[at] = contact.lambda_n
+            kept[at + 1], kept[at + 2] = contact.lambda_1, contact.lambda_2
 
     keep = kernel(keep, spec)
-
-    def keep_first(contacts, count, workspace):
-        for c in range(count):
-            contact, kept = contacts[c], workspace.inside[c]
-            kept[FIRST_N] = contact.lambda_n
-            kept[FIRST_1], kept[FIRST_2] = contact.lambda_1, contact.lambda_2
-
-    keep_first = kernel(keep_first, spec)
 
     def put_first(contacts, count, workspace):
         for c in range(count):
             contact, kept = contacts[c], workspace.inside[c]
-            contact.lambda_n = kept[FIRST_N]
-            contact.lambda_1, contact.lambda_2 = kept[FIRST_1], kept[FIRST_2]
+            contact.lambda_n = kept[FIRST]
+            contact.lambda_1, contact.lambda_2 = kept[FIRST + 1], kept[FIRST + 2]
 
     put_first = kernel(put_first, spec)
 
@@ -116,7 +107,7 @@ def make_begin_again(spec: Spec) -> Any:
         steps = alart_curnier(system, workspace, size, most, residuals, STIFF_ENOUGH)
         after, _ = residual(contacts, count, velocities)
         if after < least:
-            keep(contacts, count, workspace)
+            keep(contacts, count, workspace, BEST)
             least = after
         return steps, least, max(before, speed(contacts, count, velocities))
 
@@ -128,8 +119,8 @@ def make_begin_again(spec: Spec) -> Any:
         least, _ = residual(contacts, count, velocities)
         if least <= enough or not are_cones(contacts, count):
             return 0
-        keep(contacts, count, workspace)
-        keep_first(contacts, count, workspace)
+        keep(contacts, count, workspace, BEST)
+        keep(contacts, count, workspace, FIRST)
         keep_velocities(velocities, workspace, size, OF_BEFORE)
         usual, peak, tried = speed(contacts, count, velocities), 0.0, 0.0
         made, steps = 0, 0
@@ -161,8 +152,7 @@ def make_begin_again(spec: Spec) -> Any:
             put_first(contacts, count, workspace)
         for c in range(count):
             best = workspace.inside[c]
-            n, one, two = best[BEST_N], best[BEST_1], best[BEST_2]
-            set_impulse(contacts[c], velocities, n, one, two)
+            set_impulse(contacts[c], velocities, best[BEST], best[BEST + 1], best[BEST + 2])
         return made
 
     return separate(kernel(begin_again, spec), spec)
