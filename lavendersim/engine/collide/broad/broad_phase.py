@@ -15,8 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...compile import kernel
-from ...effects import has_hook
-from ...records import BOWL, COMPOUND, DRUM, I8, PLANE, ROPE_END, Field, dtype
+from ...records import BOWL, DRUM, I8, PLANE, Field, dtype
 from ...row_terms import row_terms
 from ...spec import Spec
 from ...step_terms import step_terms
@@ -30,16 +29,15 @@ from .tree import (
     DIGITS,
     LEAF,
     LEVELS,
-    PLACE_BITS,
     build_nodes,
-    cell,
-    hilbert,
+    make_complete_leaf,
+    make_has_leaf,
     may_pair,
     next_group,
     node_count,
     overlap,
-    size_class,
     sort_by_code,
+    sort_code,
 )
 
 STATE: list[Field] = [
@@ -105,8 +103,7 @@ def allocate_broad_phase(body_count: int, pair_capacity: int, images: int = 1) -
 
 def make_sort_leaves(spec: Spec):
     """Return `kernel(bodies, work) -> leaves`: bodies with bounds, sorted for the tree."""
-    compound, sleeps = has_hook(spec, "place_parts"), has_hook(spec, "update_sleeping")
-    connects, cavities = spec.connects, has_cavity(spec)
+    has_leaf, complete_leaf = make_has_leaf(spec), make_complete_leaf(spec)
 
     def sort_leaves(bodies, work):
         fat_bounds, codes, order, leaves = work.fat_bounds, work.codes, work.order, work.leaves
@@ -114,14 +111,8 @@ def make_sort_leaves(spec: Spec):
         high_x, high_y, high_z = -np.inf, -np.inf, -np.inf
         largest, count = 0.0, 0
         for i in range(bodies.shape[0]):
-            if bodies[i].shape == PLANE or bodies[i].shape == COMPOUND:
+            if not has_leaf(bodies[i]):
                 continue
-            if connects:
-                if bodies[i].shape == ROPE_END:
-                    continue
-            if cavities:
-                if bodies[i].shape == BOWL or bodies[i].shape == DRUM:
-                    continue
             r = fat_bounds[i]
             low_x, low_y, low_z = min(low_x, r.x), min(low_y, r.y), min(low_z, r.z)
             high_x, high_y, high_z = max(high_x, r.x), max(high_y, r.y), max(high_z, r.z)
@@ -132,27 +123,13 @@ def make_sort_leaves(spec: Spec):
         side = 1.0 / max(high_x - low_x, max(high_y - low_y, high_z - low_z))
         for k in range(count):
             r = fat_bounds[order[k]]
-            place = hilbert(
-                cell((r.x - low_x) * side),
-                cell((r.y - low_y) * side),
-                cell((r.z - low_z) * side),
-            )
-            size = size_class(max(r.ex, max(r.ey, r.ez)), largest)
-            codes[k] = (size << (3 * PLACE_BITS)) | place
+            codes[k] = sort_code(r.x - low_x, r.y - low_y, r.z - low_z, side, r, largest)
         sort_by_code(codes, order, work.other_codes, work.other_order, work.counts, count)
         for k in range(count):
             i = order[k]
-            body, r, leaf = bodies[i], fat_bounds[i], leaves[k]
-            leaf.low_x, leaf.low_y, leaf.low_z = r.x - r.ex, r.y - r.ey, r.z - r.ez
-            leaf.high_x, leaf.high_y, leaf.high_z = r.x + r.ex, r.y + r.ey, r.z + r.ez
+            r, leaf = fat_bounds[i], leaves[k]
             leaf.x, leaf.y, leaf.z = r.x, r.y, r.z
-            leaf.radius = r.radius + body.bound
-            leaf.body, leaf.owner = i, i
-            if compound:
-                leaf.owner = body.owner
-            leaf.still = 1 if bodies[leaf.owner].inv_m == 0.0 else 0
-            if sleeps:  # it may wake while the list is kept
-                leaf.still -= bodies[leaf.owner].asleep
+            complete_leaf(leaf, bodies, i, r)
         return count
 
     return kernel(sort_leaves, spec)

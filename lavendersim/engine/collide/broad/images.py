@@ -13,11 +13,8 @@ from typing import Any
 import numpy as np
 
 from ...compile import inner, kernel
-from ...effects import has_hook
-from ...records import BOWL, COMPOUND, DRUM, PLANE, ROPE_END
 from ...spec import Spec
-from ..shapes import has_cavity
-from .tree import PLACE_BITS, cell, hilbert, size_class, sort_by_code
+from .tree import make_complete_leaf, make_has_leaf, sort_by_code, sort_code
 
 ALONG_AN_AXIS = 3  # images: a period below, in the cell, a period above
 ALL = ALONG_AN_AXIS**3
@@ -62,8 +59,7 @@ def make_sort_images(spec: Spec) -> Any:
 
     What is not periodic has one leaf each, as in `broad_phase.make_sort_leaves`.
     """
-    compound, sleeps = has_hook(spec, "place_parts"), has_hook(spec, "update_sleeping")
-    connects, cavities = spec.connects, has_cavity(spec)
+    has_leaf, complete_leaf = make_has_leaf(spec), make_complete_leaf(spec)
 
     def sort_images(bodies, work):
         fat_bounds, codes, order, leaves = work.fat_bounds, work.codes, work.order, work.leaves
@@ -72,14 +68,8 @@ def make_sort_images(spec: Spec) -> Any:
         largest, count = 0.0, 0
         for i in range(bodies.shape[0]):
             body, r = bodies[i], fat_bounds[i]
-            if body.shape == PLANE or body.shape == COMPOUND:
+            if not has_leaf(body):
                 continue
-            if connects:
-                if body.shape == ROPE_END:
-                    continue
-            if cavities:
-                if body.shape == BOWL or body.shape == DRUM:
-                    continue
             x, y = wrapped(r.x, body.period_x), wrapped(r.y, body.period_y)
             z = wrapped(r.z, body.period_z)
             largest = max(largest, max(r.ex, max(r.ey, r.ez)))
@@ -103,13 +93,8 @@ def make_sort_images(spec: Spec) -> Any:
         side = 1.0 / max(high_x - low_x, max(high_y - low_y, high_z - low_z))
         for k in range(count):
             leaf, r = leaves[k], fat_bounds[order[k] // ALL]
-            place = hilbert(
-                cell((leaf.x - low_x) * side),
-                cell((leaf.y - low_y) * side),
-                cell((leaf.z - low_z) * side),
-            )
-            size = size_class(max(r.ex, max(r.ey, r.ez)), largest)
-            codes[k] = (size << (3 * PLACE_BITS)) | place
+            x, y, z = leaf.x - low_x, leaf.y - low_y, leaf.z - low_z
+            codes[k] = sort_code(x, y, z, side, r, largest)
         sort_by_code(codes, order, work.other_codes, work.other_order, work.counts, count)
         for k in range(count):
             i, code = order[k] // ALL, order[k] % ALL
@@ -118,15 +103,7 @@ def make_sort_images(spec: Spec) -> Any:
             leaf.x = wrapped(r.x, body.period_x) + kx * body.period_x
             leaf.y = wrapped(r.y, body.period_y) + ky * body.period_y
             leaf.z = wrapped(r.z, body.period_z) + kz * body.period_z
-            leaf.low_x, leaf.low_y, leaf.low_z = leaf.x - r.ex, leaf.y - r.ey, leaf.z - r.ez
-            leaf.high_x, leaf.high_y, leaf.high_z = leaf.x + r.ex, leaf.y + r.ey, leaf.z + r.ez
-            leaf.radius = r.radius + body.bound
-            leaf.body, leaf.owner = i, i
-            if compound:
-                leaf.owner = body.owner
-            leaf.still = 1 if bodies[leaf.owner].inv_m == 0.0 else 0
-            if sleeps:  # it may wake while the list is kept
-                leaf.still -= bodies[leaf.owner].asleep
+            complete_leaf(leaf, bodies, i, r)
         return count
 
     return kernel(sort_images, spec)

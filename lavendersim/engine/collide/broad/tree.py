@@ -18,8 +18,13 @@ visits one and a half times as many nodes.
 
 from __future__ import annotations
 
-from ...compile import inner
-from ...records import F8, I8, Field
+from typing import Any
+
+from ...compile import inner, kernel
+from ...effects import has_hook
+from ...records import BOWL, COMPOUND, DRUM, F8, I8, PLANE, ROPE_END, Field
+from ...spec import Spec
+from ..shapes import has_cavity
 
 # Bits of a place along one axis: cells of 1e-6 of the scene, so that one body far away does not
 # put all others into one cell. Classes of size have the three bits above; the last has no end.
@@ -209,3 +214,45 @@ def next_group(nodes, starts, groups, box, place):
             return place
         place += 1 << (2 * level - 2)
     return groups
+
+
+def make_has_leaf(spec: Spec) -> Any:
+    """Return `kernel(body) -> whether` a row of `bodies` has bounds that the tree holds."""
+    connects, cavities = spec.connects, has_cavity(spec)
+
+    def has_leaf(body):
+        if connects:
+            if body.shape == ROPE_END:
+                return False
+        if cavities:
+            if body.shape == BOWL or body.shape == DRUM:
+                return False
+        return body.shape != PLANE and body.shape != COMPOUND
+
+    return kernel(has_leaf, spec)
+
+
+@inner
+def sort_code(x, y, z, side, r, largest):
+    """Return by what a leaf is sorted: its class of size, then its place; x, y, z: from the low."""
+    place = hilbert(cell(x * side), cell(y * side), cell(z * side))
+    return (size_class(max(r.ex, max(r.ey, r.ez)), largest) << (3 * PLACE_BITS)) | place
+
+
+def make_complete_leaf(spec: Spec) -> Any:
+    """Return `kernel(leaf, bodies, i, r)`: all else of the leaf at x, y, z of the body of row i."""
+    compound, sleeps = has_hook(spec, "place_parts"), has_hook(spec, "update_sleeping")
+
+    def complete_leaf(leaf, bodies, i, r):
+        body = bodies[i]
+        leaf.low_x, leaf.low_y, leaf.low_z = leaf.x - r.ex, leaf.y - r.ey, leaf.z - r.ez
+        leaf.high_x, leaf.high_y, leaf.high_z = leaf.x + r.ex, leaf.y + r.ey, leaf.z + r.ez
+        leaf.radius = r.radius + body.bound
+        leaf.body, leaf.owner = i, i
+        if compound:
+            leaf.owner = body.owner
+        leaf.still = 1 if bodies[leaf.owner].inv_m == 0.0 else 0
+        if sleeps:  # it may wake while the list is kept
+            leaf.still -= bodies[leaf.owner].asleep
+
+    return kernel(complete_leaf, spec)
