@@ -36,7 +36,7 @@ from lavendersim.trace.whole import INTERRUPTED
 from .accuracy import Accuracy
 from .bounds import Bounds
 from .call_length import CALL, CallLength, block_steps
-from .cell_outcome import CellOutcome, EndedCell, Notes, note_measured
+from .cell_outcome import CellOutcome, EndedCell, note_closed, note_measured
 from .environment import versions
 from .freed_memory import keep_freed_memory
 from .in_turns import in_turns
@@ -207,13 +207,12 @@ def run_and_measure(jobs: Sequence[CellJob], began: Began | None = None) -> list
 
 
 def _run_and_measure(jobs: Sequence[CellJob], began: Began | None) -> list[EndedCell]:
-    with Notes(len(jobs)) as notes:
-        simulated = _simulate(jobs, began, lambda job, outcome: notes.closed(job.path, outcome))
-        raise_noted()
-        ended = []
-        for job, one in zip(jobs, simulated, strict=True):
-            ended.append(_measured(job, one))
-            notes.measured(job.path, ended[-1])
+    simulated = _simulate(jobs, began, lambda job, outcome: note_closed(job.path, outcome))
+    raise_noted()
+    ended = []
+    for job, one in zip(jobs, simulated, strict=True):
+        ended.append(_measured(job, one))
+        note_measured(job.path, ended[-1])
     return ended
 
 

@@ -6,8 +6,7 @@ JSON gives back every number as it was, NaN and infinities included.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,7 +16,7 @@ from lavendersim.trace.whole import LogDigest
 
 from .accuracy import Accuracy, Worst
 from .measured import Measured
-from .run_index import ENDED, append_lines, digest_of, ended_row, ended_rows
+from .run_index import ENDED, digest_of, ended_rows, note_ended
 
 
 class CellOutcome(NamedTuple):
@@ -41,72 +40,27 @@ class EndedCell(NamedTuple):
     measured: dict[int, Measured]
 
 
-def note_closed(log: Path, outcome: CellOutcome) -> None:
-    """Append how a cell ended, when its log is closed."""
-    append_lines(log.parent.parent / ENDED, _closed(log, outcome))
-
-
-def note_measured(log: Path, ended: EndedCell) -> None:
-    """Append what was measured of a log to how its cell ended."""
-    append_lines(log.parent.parent / ENDED, _measured(log, ended))
-
-
-def _closed(log: Path, outcome: CellOutcome, **more: Any) -> dict[str, Any]:
+def note_closed(log: Path, outcome: CellOutcome, **more: Any) -> None:
+    """Append how a cell ended, and more that is known of it, when its log is closed."""
     accuracy = outcome.accuracy
-    return ended_row(
+    note_ended(
         log,
         outcome.status,
         outcome.log,
-        outcome=outcome._asdict() | {"accuracy": None, "log": None},
+        outcome=outcome._replace(accuracy=None, log=None)._asdict(),  # type: ignore[arg-type]
         accuracy=accuracy._asdict()
         | {"worst": dict(accuracy.worst), "at_limit": dict(accuracy.at_limit)},
         **more,
     )
 
 
-def _measured(log: Path, ended: EndedCell) -> dict[str, Any]:
+def note_measured(log: Path, ended: EndedCell) -> None:
+    """Append what was measured of a log to how its cell ended."""
     measured = {
         index: [one.values, {name: list(found) for name, found in one.always.items()}]
         for index, one in ended.measured.items()
     }
-    return _closed(log, ended.outcome, measured=measured)
-
-
-class Notes:
-    """Notes how cells ended: of one when its log is closed, and again when that is measured.
-
-    Several that are run together are brief, and noted together when this is left, however it is:
-    each once, with its measures if it has some by then. To open the file for each takes as long as
-    to close its log.
-    """
-
-    def __init__(self, cells: int) -> None:
-        self._together = cells > 1
-        self._rows: dict[Path, Callable[[], dict[str, Any]]] = {}  # by the log
-
-    def __enter__(self) -> Notes:
-        """Return this."""
-        return self
-
-    def closed(self, log: Path, outcome: CellOutcome) -> None:
-        """Note that the log of a cell is closed."""
-        if self._together:
-            self._rows[log] = partial(_closed, log, outcome)
-        else:
-            note_closed(log, outcome)
-
-    def measured(self, log: Path, ended: EndedCell) -> None:
-        """Note that it is measured."""
-        if self._together:
-            self._rows[log] = partial(_measured, log, ended)
-        else:
-            note_measured(log, ended)
-
-    def __exit__(self, *error: object) -> None:
-        """Append what is noted."""
-        if self._rows:
-            path = next(iter(self._rows)).parent.parent / ENDED
-            append_lines(path, *(row() for row in self._rows.values()))
+    note_closed(log, ended.outcome, measured=measured)
 
 
 def ended_cells(directory: Path) -> dict[str, EndedCell]:

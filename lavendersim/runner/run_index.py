@@ -3,10 +3,9 @@
 While cells run, the index (`cells_index`) has them as pending, and two lines are appended here for
 each that ends, when its log is closed and when that is measured (`cell_outcome`): to write all of
 the index every time would take, of a sweep, the square of its cells. Who reads the index reads
-both. Cells so brief that several are run together have one line each, all in one write. A line is
-written at once by the process that ran the cell, so it is whole after a kill or is not counted. It
-is not flushed to the disk: after a power loss it may speak of a log that is cut, which its digest
-shows.
+both. A line is one write by the process that ran the cell, so it is whole after a kill or is not
+counted. It is not flushed to the disk: after a power loss it may speak of a log that is cut, which
+its digest shows.
 """
 
 from __future__ import annotations
@@ -38,22 +37,18 @@ def digest_of(row: Mapping[str, Any] | None) -> LogDigest | None:
     return LogDigest(row["bytes"], int(row["crc32"], 16), row["sha256"]) if row else None
 
 
-def ended_row(log: Path, status: str, digest: LogDigest | None, **more: Any) -> dict[str, Any]:
-    """Return the row that says how the cell of a log ended, and more that is known of it."""
-    return {"file": log.name, "status": status, "log": as_row(digest), **more}
-
-
 def note_ended(log: Path, status: str, digest: LogDigest | None, **more: Any) -> None:
     """Append how the cell of a log ended, and more that is known of it."""
-    append_lines(log.parent.parent / ENDED, ended_row(log, status, digest, **more))
+    row = {"file": log.name, "status": status, "log": as_row(digest), **more}
+    append_line(log.parent.parent / ENDED, row)
 
 
-def append_lines(path: Path, *rows: Mapping[str, Any]) -> None:
-    """Append rows in one write, so that each is whole or cut by its end after a kill."""
+def append_line(path: Path, row: Mapping[str, Any]) -> None:
+    """Append a row in one write, so that it is whole or cut by its end after a kill."""
     flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT
     handle = os.open(path, flags, 0o666)
     try:
-        os.write(handle, "".join([json.dumps(row) + "\n" for row in rows]).encode())
+        os.write(handle, (json.dumps(row) + "\n").encode())
     finally:
         os.close(handle)
 

@@ -13,7 +13,6 @@ from lavendersim.runner.accuracy import Accuracy, Worst
 from lavendersim.runner.cell_outcome import (
     CellOutcome,
     EndedCell,
-    Notes,
     ended_cells,
     note_closed,
     note_measured,
@@ -44,31 +43,6 @@ def test_a_nan_stays_one(tmp_path: Path) -> None:
 def test_a_cell_whose_log_was_closed_has_ended_and_is_not_measured(tmp_path: Path) -> None:
     note_closed(tmp_path / "cells" / "a.mcap", OUTCOME)
     assert ended_cells(tmp_path) == {"a.mcap": EndedCell(OUTCOME, {})}
-
-
-def test_brief_cells_are_noted_once_each_together(tmp_path: Path) -> None:
-    logs = [tmp_path / "cells" / name for name in ("a.mcap", "b.mcap")]
-    ended = EndedCell(OUTCOME, {3: Measured({"speed": 1.0}, {})})
-
-    def stopped() -> None:
-        with Notes(len(logs)) as notes:
-            for log in logs:
-                notes.closed(log, OUTCOME)
-            notes.measured(logs[0], ended)
-            assert not (tmp_path / ENDED).exists()
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        stopped()
-    assert len((tmp_path / ENDED).read_bytes().splitlines()) == len(logs)
-    assert ended_cells(tmp_path) == {"a.mcap": ended, "b.mcap": EndedCell(OUTCOME, {})}
-
-
-def test_a_long_cell_is_noted_at_once(tmp_path: Path) -> None:
-    log = tmp_path / "cells" / "a.mcap"
-    with Notes(1) as notes:
-        notes.closed(log, OUTCOME)
-        assert ended_cells(tmp_path) == {"a.mcap": EndedCell(OUTCOME, {})}
 
 
 def test_a_line_of_an_older_version_does_not_say_how_a_cell_ended(tmp_path: Path) -> None:

@@ -165,7 +165,7 @@ def test_logs_that_were_closed_and_not_measured_are_not_run_again(
     drops = write(tmp_path, DROPS + more)
     whole = contents(run(drops, tmp_path / "whole").run)
     with monkeypatch.context() as patch:
-        patch.setattr("lavendersim.runner.cell.Notes.measured", lambda self, log, ended: None)
+        patch.setattr("lavendersim.runner.cell.note_measured", lambda log, ended: None)
         left = unfinished(drops, tmp_path / "runs")
     with monkeypatch.context() as patch:
         patch.setattr("lavendersim.runner.executor.run_and_measure", None)

@@ -8,7 +8,7 @@ import pytest
 
 from lavendersim.runner.run_index import (
     ENDED,
-    append_lines,
+    append_line,
     as_row,
     digest_of,
     drop_cut_line,
@@ -58,16 +58,16 @@ def test_a_line_that_a_kill_cut_is_not_counted_and_none_stands_behind_it(
     tmp_path: Path, cut: int
 ) -> None:
     for name in ("a.mcap", "b.mcap"):
-        append_lines(tmp_path / ENDED, {"file": name})
+        append_line(tmp_path / ENDED, {"file": name})
     path = tmp_path / ENDED
     path.write_bytes(path.read_bytes()[: -min(cut, 19)])
     assert list(ended_rows(tmp_path)) == ["a.mcap"]
     drop_cut_line(tmp_path)
-    append_lines(path, {"file": "c.mcap"})
+    append_line(path, {"file": "c.mcap"})
     assert list(ended_rows(tmp_path)) == ["a.mcap", "c.mcap"]
 
 
 def test_lines_that_are_kept_are_whole_and_once_each(tmp_path: Path) -> None:
     for name in ("a", "b", "a", "c"):
-        append_lines(tmp_path / ENDED, {"file": name})
+        append_line(tmp_path / ENDED, {"file": name})
     assert kept_lines(tmp_path, {"a", "c"}) == '{"file": "a"}\n{"file": "c"}\n'
