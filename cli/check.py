@@ -20,13 +20,16 @@ from lavender_cli.run import (
     Starts,
     Strict,
     Sweep,
+    Threads,
     overrides_of,
+    share_sweeps,
 )
 
 
 def check(
     configs: Configs,
     jobs: Jobs = 1,
+    threads: Threads = None,
     runs: Runs = Path("runs"),
     full: Annotated[
         bool, typer.Option("--full", help="Run slow experiments in full, not reduced.")
@@ -69,6 +72,7 @@ def check(
     from lavendersim.runner.environment import about
     from lavendersim.runner.prediction import planned_before
 
+    share_sweeps(threads)
     overrides = overrides_of(values, axes)
     if solver and engine:
         raise UsageError("a matrix is of solvers or of engines: leave out --solver or --engine")

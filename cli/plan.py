@@ -168,6 +168,8 @@ def write(explained: Explanation, title: str, width: int | None = None) -> None:
         ]
         console.print("choices that one engine has", style="bold")
         console.print(_pairs([*laws, ("digest", explained.digest)]))
+        console.print("threads of a step, by --threads", style="bold")
+        console.print(explained.threads)
 
 
 def _table(parts: list[ExplanationItem], heading: str) -> Table:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -31,6 +32,16 @@ Configs = Annotated[
 ]
 Jobs = Annotated[
     int, typer.Option("--jobs", "-j", min=1, help="Processes; logs are the same for any number.")
+]
+Threads = Annotated[
+    int | None,
+    typer.Option(
+        "--threads",
+        metavar="N",
+        min=1,
+        max=32,
+        help="That share the sweeps of a large scene; logs are the same for any number.",
+    ),
 ]
 Refine = Annotated[
     bool,
@@ -112,6 +123,7 @@ def run(
     configs: Configs,
     plot: Annotated[bool, typer.Option("--plot", help="Draw the figures afterwards.")] = False,
     jobs: Jobs = 1,
+    threads: Threads = None,
     runs: Runs = Path("runs"),
     refine: Refine = False,
     values: Set = None,
@@ -162,6 +174,7 @@ def run(
             raise typer.BadParameter(f"{option}: watched runs are whole", param_hint="--watch")
         again(configs, lambda: run(**given))
         return
+    share_sweeps(threads)
     if into is not None or shard is not None:
         asked = {"--plot": plot, "--refine": refine, "--resume": resume, "--json": as_json}
         asked |= {
@@ -172,7 +185,7 @@ def run(
             "--dask": dask is not None,
         }
         overrides = overrides_of(values, axes, engine)
-        _run_shard(configs, overrides, strict, _Place(into, shard), jobs, asked)
+        _run_shard(configs, overrides, strict, _Place(into, shard), jobs, threads, asked)
         return
 
     if live:
@@ -186,6 +199,7 @@ def run(
     options = {
         "--runs": runs if runs != Path("runs") else None,
         "--jobs": jobs if jobs > 1 else None,
+        "--threads": threads,
         "--executor": executor,
         "--dask": dask,
         "--tag": tags,
@@ -284,6 +298,12 @@ def run(
         raise typer.Exit(1)
 
 
+def share_sweeps(threads: int | None) -> None:
+    """Let steps of this process, and of those it begins, have so many threads; None: as before."""
+    if threads is not None:
+        os.environ["LAVENDER_THREADS"] = str(threads)
+
+
 def print_finished(finished: Any, refined: Any = None) -> None:
     """Print what became of a run, and its time errors where they were taken."""
     printing.print_costs(finished)
@@ -315,6 +335,7 @@ def _run_shard(
     strict: bool,
     place: _Place,
     jobs: int,
+    threads: int | None,
     asked: dict[str, bool],
 ) -> None:
     """Run cells into a folder that other workers share; nothing is judged before the merge."""
@@ -326,6 +347,7 @@ def _run_shard(
     if refused := [option for option, given in asked.items() if given]:
         raise UsageError(f"{refused[0]} with --into: cells are not judged before `lavender merge`")
     options = {"--into": into, "--shard": shard, "--jobs": jobs if jobs > 1 else None}
+    options |= {"--threads": threads}
     given = as_words({**options, "--strict": strict})
     command = command_of("run", configs, overrides, *given)
     with interruptible(command), on_full_disk(command):

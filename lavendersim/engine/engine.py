@@ -11,6 +11,7 @@ here; rows of contacts grow when a step needs more.
 
 from __future__ import annotations
 
+from functools import partial
 from operator import is_
 from typing import Any, NamedTuple
 
@@ -27,8 +28,10 @@ from .collide.mesh_tables import MeshTables
 from .compile import compiling
 from .effects import effects_of, has_hook, sleeping
 from .records import CONTACTS_FULL, PAIRS_FULL, ROWS_FULL, WOKEN
+from .solvers.packed.members import packed_of, serve_for
 from .spec import Spec
 from .step import advance_for
+from .team import with_team
 
 # Steps whose rows are kept before they must be handed on; several hundred amortise a kernel call.
 BLOCK_STEPS = 512
@@ -130,6 +133,7 @@ class Engine:
         self.kind = _kinds.setdefault(types, len(_kinds))
         self._entry = _entries.get(self.kind)
         self._objects: tuple[Any, np.ndarray] = (), np.empty(0, np.int64)
+        self._threads = 1
 
     def note_memory(self) -> None:
         """Take up arrays that were put in the place of its own: equal in type, shape and values."""
@@ -138,7 +142,8 @@ class Engine:
     @property
     def machine_code(self) -> int:
         """Where the machine code of its step lies; 0: it is not known, or steps need room first."""
-        return 0 if self._records_sweeps else _codes.get(self.kind, 0)
+        alone = self._records_sweeps or self._threads > 1
+        return 0 if alone else _codes.get(self.kind, 0)
 
     def array_objects(self) -> np.ndarray:
         """Return the addresses of the array objects of its memory, parameters and counters last."""
@@ -149,6 +154,16 @@ class Engine:
         objects = np.array([*map(id, memory.arrays_of(now))])
         self._objects = now, objects
         return objects
+
+    @property
+    def threads(self) -> int:
+        """Threads that share the sweeps of a step, see `team`; bits are those of one."""
+        return self._threads
+
+    @threads.setter
+    def threads(self, asked: int) -> None:
+        """Ask for so many: one where this engine has nothing that they would share."""
+        self._threads = 1 if packed_of(self.workspace.solver) is None else asked
 
     @property
     def bodies(self) -> np.ndarray:
@@ -243,7 +258,11 @@ class Engine:
     def _call(self, steps: int) -> int:
         arguments = self.state, self.workspace, self.log, self.parameters, self.counters, steps
         if self._entry is not None:
-            return int(self._entry(*arguments))
+            packed = packed_of(self.workspace.solver) if self._threads > 1 else None
+            if packed is None:
+                return int(self._entry(*arguments))
+            serve, words = partial(serve_for(self.spec), packed), packed.team.words
+            return int(with_team(serve, words, self._threads, partial(self._entry, *arguments)))
         with compiling():
             status = int(self._kernel(*arguments))
         compiled = list(self._kernel.overloads.values())

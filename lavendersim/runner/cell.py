@@ -18,6 +18,7 @@ from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
 from lavendersim.engine.sources import source_hash
 from lavendersim.engine.step_doubling import MOST_SUBSTEPS
+from lavendersim.engine.team import threads_asked
 from lavendersim.engine.together import EngineAdvance, advance_together
 from lavendersim.garbage import uncollected
 from lavendersim.measures import applies, outcomes_of
@@ -182,6 +183,7 @@ def started(scene: Scene, plan: Plan, steps: int) -> tuple[Engine, int]:
     """
     start = perf_counter_ns()
     engine = scene.engine(plan.spec, block_steps(steps, len(scene.names)))
+    engine.threads = threads_asked()
     engine.advance(0)  # compiles or loads the kernel, and records the initial state
     return engine, perf_counter_ns() - start
 

@@ -12,6 +12,9 @@ from typing import Any, NamedTuple
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.composition import composition_of, kept
 from lavendersim.engine.effects import EFFECTS, Effect
+from lavendersim.engine.solvers.packed.lanes import WIDTH
+from lavendersim.engine.solvers.packed.members import shares_sweeps
+from lavendersim.engine.solvers.packed.team_sweeps import WORTH_IT
 from lavendersim.engine.spec import Spec
 
 from .laws import needs
@@ -53,6 +56,7 @@ class Explanation(NamedTuple):
     solver: ExplanationItem
     always: Kernels  # that an engine has without any effect, and none of the above brings
     shared: Kernels  # that several of the above bring together
+    threads: str  # what `--threads` would share, or why nothing
 
     def parts(self) -> list[ExplanationItem]:
         """Return everything that is in or out."""
@@ -94,7 +98,19 @@ def _explained(plan: Plan, others: Iterable[Plan]) -> Explanation:
         solver=solver,
         always=always,
         shared=_without(composed, always, solver.kernels, *brought),
+        threads=_threads(plan),
     )
+
+
+def _threads(plan: Plan) -> str:
+    if shares_sweeps(plan.spec):
+        least = WIDTH * WORTH_IT
+        return f"sweeps are shared where some {least} contacts and more are visited by eight"
+    if plan.spec.solver != "adaptive":
+        return (
+            f"nothing is shared: the solver is {plan.spec.solver}, and packs no contacts by eight"
+        )
+    return f"nothing is shared: {_decided(plan, 'packed_sweeps').reason}"
 
 
 def explain_all(plans: Iterable[Plan]) -> list[Explanation]:

@@ -11,6 +11,7 @@ from typing import Any
 from ...compile import kernel
 from ...prefetch import AHEAD, prefetch_impulses
 from ...spec import Spec
+from ...team import PUSH as PUSH_TASK
 from ..solver import ContactSystem
 from .lane_memory import (
     put_bodies,
@@ -24,6 +25,7 @@ from .lane_memory import (
 from .lanes import WIDTH, greater, lane, magnitude, positive, total, zeros
 from .layout import ARM_A, ARM_B, NORMAL, PER_MASS_A, PER_MASS_B, make_place
 from .packing import make_pack_rows, make_put_arms, make_put_geometry, make_unpack_bodies
+from .team_sweeps import make_share_sweep
 
 # Fields of one number each, behind the masses of a normal alone.
 CORRECTION, PER_K, PUSH = range(PER_MASS_B + 1, PER_MASS_B + 4)
@@ -46,9 +48,9 @@ def _make_pack_normal(spec: Spec) -> Any:
 
 
 def _make_visit_normals(spec: Spec) -> Any:
-    """Return `kernel(packed, at, slot, most) -> most`, the greatest change of a push so far."""
+    """Return `kernel(packed, at, slot, own, most) -> most`, the greatest change of a push."""
 
-    def visit_normals(packed, at, slot, most):
+    def visit_normals(packed, at, slot, own, most):
         rows, state, first, second = packed.rows, packed.state, packed.first, packed.second
         va, ya = take_bodies(state, first, slot)
         vb, yb = take_bodies(state, second, slot)
@@ -64,11 +66,27 @@ def _make_visit_normals(spec: Spec) -> Any:
         p = n * change
         va = va - p * take_eight(rows, at + PER_MASS_A * WIDTH)
         vb = vb + p * take_eight(rows, at + PER_MASS_B * WIDTH)
-        put_bodies(state, first, slot, va, ya + arm_a * change)
-        put_bodies(state, second, slot, vb, yb + arm_b * change)
+        put_bodies(state, first, slot, own, va, ya + arm_a * change)
+        put_bodies(state, second, slot, own, vb, yb + arm_b * change)
         return greater(magnitude(change), most)
 
     return kernel(visit_normals, spec)
+
+
+def make_push_groups(spec: Spec) -> Any:
+    """Return `kernel(packed, first, last, own) -> greatest change` of a push [kg m]."""
+    visit = _make_visit_normals(spec)
+
+    def push_groups(packed, first, last, own):
+        most = zeros()
+        for g in range(first, last):
+            most = visit(packed, g * PUSHED * WIDTH, g * WIDTH, own, most)
+        greatest = lane(most, 0)
+        for k in range(1, WIDTH):
+            greatest = greater(lane(most, k), greatest)
+        return greatest
+
+    return kernel(push_groups, spec)
 
 
 def make_push_apart(spec: Spec) -> Any:
@@ -78,7 +96,8 @@ def make_push_apart(spec: Spec) -> Any:
     [m], [rad] are 0. sweeps: at most.
     """
     pack = make_pack_rows(spec, True, _make_pack_normal(spec), PUSHED)
-    unpack_bodies, visit = make_unpack_bodies(spec), _make_visit_normals(spec)
+    unpack_bodies = make_unpack_bodies(spec)
+    push = make_share_sweep(spec, make_push_groups(spec), PUSH_TASK)
     place = make_place(spec, True, PUSHED)
 
     def push_apart(system, packed, pseudo, sweeps):
@@ -86,19 +105,13 @@ def make_push_apart(spec: Spec) -> Any:
         slots = pack(ContactSystem(contacts, order, system.count, bodies, pseudo), packed)
         made = 0
         for _ in range(sweeps):
-            most = zeros()
-            for g in range(slots // WIDTH):
-                most = visit(packed, g * PUSHED * WIDTH, g * WIDTH, most)
             made += 1
-            changed = False
-            for k in range(WIDTH):
-                changed = changed or lane(most, k) > 0.0
-            if not changed:  # nor would anything in the sweeps that are left
+            if not push(packed, slots) > 0.0:  # nor would anything in the sweeps that are left
                 break
         for k in range(system.count):
             prefetch_impulses(contacts, order[min(k + AHEAD, system.count - 1)])
-            push = take_one(packed.rows, place(packed.slot[k]) + PUSH * WIDTH)
-            contacts[order[k]].push = push
+            pushed = take_one(packed.rows, place(packed.slot[k]) + PUSH * WIDTH)
+            contacts[order[k]].push = pushed
         unpack_bodies(bodies, pseudo, packed)
         return made
 

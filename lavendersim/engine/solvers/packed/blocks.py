@@ -134,7 +134,7 @@ def make_unpack_block(spec: Spec, eight: bool) -> Any:
 
 
 def make_visit_block(spec: Spec, eight: bool) -> Any:
-    """Return `kernel(packed, at, slot, most) -> most`.
+    """Return `kernel(packed, at, slot, own, most) -> most`.
 
     One projected update of the contact, or of the group, whose fields begin at `at`; most: the
     greatest change so far [m/s].
@@ -164,7 +164,7 @@ def make_visit_block(spec: Spec, eight: bool) -> Any:
 
     axes = kernel(axes, spec)
 
-    def visit(packed, at, slot, most):
+    def visit(packed, at, slot, own, most):
         rows, state = packed.rows, packed.state
         first, second = packed.first, packed.second
         va, ya = take_state(state, first, slot)
@@ -211,8 +211,8 @@ def make_visit_block(spec: Spec, eight: bool) -> Any:
             ya, yb, most = visit_torsion(rows, at, new_n, ya, yb, most)
         if rolling:
             ya, yb, most = visit_roll(rows, at, new_n, ya, yb, most)
-        put_state(state, first, slot, va, ya)
-        put_state(state, second, slot, vb, yb)
+        put_state(state, first, slot, own, va, ya)
+        put_state(state, second, slot, own, vb, yb)
         most = greater(magnitude(change_n) * take(rows, at, K_N), most)
         across = greater(magnitude(change_1), magnitude(change_2))
         return greater(across * take(rows, at, K_T), most)

@@ -3,6 +3,9 @@
 Places are taken as they are given, without bounds or negative ones. A body's state is a line of the
 processor's cache, a vector, 0, another vector, 0. Those of eight bodies are read line by line, and
 transposed in registers: what one visit wrote is read whole by the next.
+
+What nothing moves is read from the first line, which stays 0. What a visit would write there goes
+to a line of its thread's own: nobody reads it, and no two threads write one line.
 """
 
 from __future__ import annotations
@@ -91,11 +94,18 @@ def take_triples(typing, numbers, at):
     return signature(TRIPLES, numbers, at), emit
 
 
-def _halves(k: int, context: Any, builder: Any, sig: Any, args: Any) -> list[Any]:
-    """Return pointers to the two vectors of the body whose state begins at ends[at + k]."""
+def _halves(
+    k: int, context: Any, builder: Any, sig: Any, args: Any, least: Any = None
+) -> list[Any]:
+    """Return pointers to the two vectors of the body whose state begins at ends[at + k].
+
+    least: where it begins at least.
+    """
     state, ends, at = args[:3]
     place = builder.add(at, ir.Constant(INDEX, k))
     body = builder.load(_place(context, builder, INDEX, sig.args[1], ends, place))
+    if least is not None:
+        body = builder.select(builder.icmp_signed("<", body, least), least, body)
     first = _place(context, builder, FOUR, sig.args[0], state, body)
     return [first, builder.gep(first, [ir.Constant(INDEX, 1)])]
 
@@ -112,16 +122,17 @@ def take_body(typing, state, ends, at):
 
 
 @primitive
-def put_body(typing, state, ends, at, first, second):
-    """Write the two vectors of a body back."""
+def put_body(typing, state, ends, at, own, first, second):
+    """Write the two vectors of a body back; own: the line of what nothing moves."""
 
     def emit(context, builder, sig, args):
         nothing = ir.Constant(FOUR, [0.0] * 4)
-        for vector, half in zip(args[3:], _halves(0, context, builder, sig, args), strict=True):
+        halves = _halves(0, context, builder, sig, args, args[3])
+        for vector, half in zip(args[4:], halves, strict=True):
             _store(builder, shuffled(builder, vector, nothing, _LAST), half)
         return context.get_dummy_value()
 
-    return signature(types.void, state, ends, at, first, second), emit
+    return signature(types.void, state, ends, at, own, first, second), emit
 
 
 def _swapped(builder: Any, rows: list[Any], distance: int) -> list[Any]:
@@ -165,13 +176,16 @@ def take_bodies(typing, state, ends, at):
 
 
 @primitive
-def put_bodies(typing, state, ends, at, first, second):
-    """Write the two Triples of eight bodies back; a body named twice keeps the last."""
+def put_bodies(typing, state, ends, at, own, first, second):
+    """Write the two Triples of eight bodies back; a body named twice keeps the last.
+
+    own: the line of what nothing moves.
+    """
 
     def emit(context, builder, sig, args):
-        lines = [_halves(k, context, builder, sig, args) for k in range(WIDTH)]
+        lines = [_halves(k, context, builder, sig, args, args[3]) for k in range(WIDTH)]
         nothing = ir.Constant(EIGHT, [0.0] * WIDTH)
-        for half, triples in enumerate(args[3:]):
+        for half, triples in enumerate(args[4:]):
             columns = [*parts_of(builder, triples), nothing]
             for k, both in enumerate(_swapped(builder, _swapped(builder, columns, 1), 2)):
                 for body in (k, k + 4):
@@ -180,4 +194,4 @@ def put_bodies(typing, state, ends, at, first, second):
                     _store(builder, four, lines[body][half])
         return context.get_dummy_value()
 
-    return signature(types.void, state, ends, at, first, second), emit
+    return signature(types.void, state, ends, at, own, first, second), emit

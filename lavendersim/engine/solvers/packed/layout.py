@@ -26,6 +26,7 @@ from ...compile import kernel
 from ...records import ANGULAR_VELOCITY, F8, VELOCITY, Field, dtype
 from ...row_terms import row_terms
 from ...spec import Spec
+from ...team import MOST, TeamMemory, allocate_team
 from .lane_memory import STRIDE
 from .lanes import WIDTH
 
@@ -60,6 +61,11 @@ YIELDING = 1  # gamma along the surface, the last field of all
 # Groups of a run, and sweeps that follow each other run by run (`sweep`).
 RUN, TOGETHER = 64, 4
 LINE = 8  # numbers of a line of the processor's cache
+# Pieces that a team may be dealt out, at most, for each contact and beside: see `team_sweeps`.
+MOST_PIECES, FEWEST_PIECES = 8, 1024
+# Lines of the state before those of bodies: what nothing moves, which idle lanes have, too, and of
+# each member of a team what it would write there.
+HEAD = 1 + MOST
 
 # Velocity of a body when the solve begins [m/s], [rad/s], and the lower triangle of L.
 START: Final[list[Field]] = [*VELOCITY, *ANGULAR_VELOCITY]
@@ -91,13 +97,16 @@ class PackedContacts(NamedTuple):
     first: np.ndarray  # (slots,) int64, where the state of body A begins
     second: np.ndarray  # the same of body B
     slot: np.ndarray  # (contacts,) int64, place of the contact visited k-th; by eights: 8 g + lane
-    state: np.ndarray  # ((bodies + 1) * STRIDE,) v - v_0, 0, y, 0; the last for what fills up
+    state: np.ndarray  # ((HEAD + bodies) * STRIDE,) v - v_0, 0, y, 0
     start: np.ndarray  # (bodies,) START: v_0, omega_0
     factor: np.ndarray  # (bodies,) FACTOR: L
     group_of: np.ndarray  # (bodies,) int64, last group with a contact of the body
     run_of: np.ndarray  # (bodies,) int64, first run of groups with a contact of it
     reach: np.ndarray  # (1,) int64, most runs from the first to the last with one movable body
     changes: np.ndarray  # (TOGETHER,) of sweeps made together, the last one first [m/s]
+    stages: np.ndarray  # (contacts + 1,) int64, see `team_sweeps`
+    counts: np.ndarray  # (1,) int64, of stages; 0: sweeps are not shared so
+    team: TeamMemory
 
 
 def stride(spec: Spec, eight: bool) -> int:
@@ -114,13 +123,16 @@ def allocate_packed(spec: Spec, bodies: int, contacts: int, eight: bool) -> Pack
         np.zeros(slots, np.int64),
         np.zeros(slots, np.int64),
         np.zeros(contacts, np.int64),
-        _lines((bodies + 1) * STRIDE),
+        _lines((HEAD + bodies) * STRIDE),
         np.zeros(bodies, dtype(START)),
         np.zeros(bodies, dtype(FACTOR)),
         np.zeros(bodies, np.int64),
         np.zeros(bodies, np.int64),
         np.zeros(1, np.int64),
         np.zeros(TOGETHER),
+        np.zeros(contacts + 1, np.int64),
+        np.zeros(1, np.int64),
+        allocate_team(MOST_PIECES * contacts + FEWEST_PIECES),
     )
 
 

@@ -75,14 +75,14 @@ def make_unpack_normal(spec: Spec, eight: bool) -> Any:
 
 
 def make_visit_normal(spec: Spec, eight: bool) -> Any:
-    """Return `kernel(packed, at, slot, most) -> most`, see `sweep`."""
+    """Return `kernel(packed, at, slot, own, most) -> most`, see `sweep`."""
     compliant, levers = row_terms(spec).compliant, row_terms(spec).levers
     step = WIDTH if eight else 1
     take_number, take_axis = (take_eight, take_triples) if eight else (take_one, take_triple)
     put_number = put_eight if eight else put_one
     take_state, put_state = (take_bodies, put_bodies) if eight else (take_body, put_body)
 
-    def visit_normal(packed, at, slot, most):
+    def visit_normal(packed, at, slot, own, most):
         rows, state, first, second = packed.rows, packed.state, packed.first, packed.second
         va, ya = take_state(state, first, slot)
         vb, yb = take_state(state, second, slot)
@@ -105,8 +105,8 @@ def make_visit_normal(spec: Spec, eight: bool) -> Any:
         if levers:
             ya = ya + arm_a * change
             yb = yb + arm_b * change
-        put_state(state, first, slot, va, ya)
-        put_state(state, second, slot, vb, yb)
+        put_state(state, first, slot, own, va, ya)
+        put_state(state, second, slot, own, vb, yb)
         return greater(magnitude(change) * take_number(rows, at + K_NORMAL * step), most)
 
     return kernel(visit_normal, spec)

@@ -10,10 +10,12 @@ from ...prefetch import AHEAD, prefetch, prefetch_impulses
 from ...rotation import inverse_inertia_times
 from ...row_terms import row_terms
 from ...spec import Spec
+from ...team import MEMBERS
 from ...vectors import Vec3, cross, dot, plus_scaled
 from .lane_memory import STRIDE, put_one, take_one
 from .lanes import WIDTH
-from .layout import AXIS, RUN, make_place
+from .layout import AXIS, HEAD, RUN, make_place
+from .team_sweeps import make_find_stages
 
 
 @inner
@@ -141,7 +143,9 @@ def _make_pack_bodies(spec: Spec) -> Any:
                         _factorise(factor, first, second, Vec3(x, y, z))
             packed.group_of[i] = -1
             for k in range(STRIDE):
-                packed.state[i * STRIDE + k] = 0.0
+                packed.state[(HEAD + i) * STRIDE + k] = 0.0
+        for k in range(STRIDE):
+            packed.state[k] = 0.0
 
     return kernel(pack_bodies, spec)
 
@@ -154,14 +158,15 @@ def make_pack_rows(spec: Spec, eight: bool, pack_contact: Any, fields: int) -> A
     pack_bodies = _make_pack_bodies(spec)
     place = make_place(spec, eight, fields)
 
-    def fill(packed, begin, end, spare):
+    def fill(packed, begin, end):
         for slot in range(begin, end):
             at = place(slot)
             for field in range(fields):
                 put_one(packed.rows, at + field * WIDTH, 0.0)
-            packed.first[slot], packed.second[slot] = spare, spare
+            packed.first[slot], packed.second[slot] = 0, 0
 
     fill_up: Any = kernel(fill, spec) if eight else None
+    find_stages: Any = make_find_stages(spec) if eight else None
 
     def note_run(packed, body, run):
         # Before the body's last group is set; what has no mass is in all of them.
@@ -175,7 +180,6 @@ def make_pack_rows(spec: Spec, eight: bool, pack_contact: Any, fields: int) -> A
         contacts, order, bodies = system.contacts, system.order, system.bodies
         velocities = system.velocities
         pack_bodies(bodies, velocities, packed)
-        spare = bodies.shape[0] * STRIDE
         slot = 0
         packed.reach[0] = 0
         for k in range(system.count):
@@ -188,7 +192,7 @@ def make_pack_rows(spec: Spec, eight: bool, pack_contact: Any, fields: int) -> A
                 shares = shares or (contact.inv_m_b > 0.0 and packed.group_of[b] == group)
                 if shares:
                     group += 1
-                    fill_up(packed, slot, group * WIDTH, spare)
+                    fill_up(packed, slot, group * WIDTH)
                     slot = group * WIDTH
                 if contact.inv_m_a > 0.0:
                     note_run(packed, a, group // RUN)
@@ -196,13 +200,17 @@ def make_pack_rows(spec: Spec, eight: bool, pack_contact: Any, fields: int) -> A
                     note_run(packed, b, group // RUN)
                 packed.group_of[a], packed.group_of[b] = group, group
             packed.slot[k] = slot
-            packed.first[slot], packed.second[slot] = a * STRIDE, b * STRIDE
+            packed.first[slot] = (HEAD + a) * STRIDE if contact.inv_m_a > 0.0 else 0
+            packed.second[slot] = (HEAD + b) * STRIDE if contact.inv_m_b > 0.0 else 0
             pack_contact(contact, velocities, packed.rows, place(slot), packed.factor)
             slot += 1
         if eight:
             end = (slot + WIDTH - 1) // WIDTH * WIDTH
-            fill_up(packed, slot, end, spare)
+            fill_up(packed, slot, end)
             slot = end
+            packed.counts[0] = 0
+            if packed.team.words[MEMBERS] > 0:
+                find_stages(packed, slot)
         return slot
 
     return kernel(pack, spec)
@@ -233,7 +241,8 @@ def make_unpack_bodies(spec: Spec) -> Any:
     def unpack_bodies(bodies, velocities, packed):
         for i in range(bodies.shape[0]):
             if bodies[i].inv_m > 0.0:
-                v, at, start, own = velocities[i], i * STRIDE, packed.start[i], packed.factor[i]
+                v, at = velocities[i], (HEAD + i) * STRIDE
+                start, own = packed.start[i], packed.factor[i]
                 v.vx = start.vx + take_one(packed.state, at)
                 v.vy = start.vy + take_one(packed.state, at + 1)
                 v.vz = start.vz + take_one(packed.state, at + 2)

@@ -14,17 +14,15 @@ from ...effects import made_once
 from ...row_terms import row_terms
 from ...spec import Spec
 from ...spin_block import resists_turning
+from ...team import SWEEP
 from ..iteration import Iteration
 from .blocks import make_pack_block, make_unpack_block, make_visit_block
-from .lanes import (
-    WIDTH,
-    greater,
-    lane,
-    zeros,
-)
+from .lane_memory import STRIDE
+from .lanes import WIDTH, greater, lane, zeros
 from .layout import RUN, begins, stride
 from .normals import make_pack_normal, make_unpack_normal, make_visit_normal
 from .packing import make_pack_rows, make_unpack_rows
+from .team_sweeps import make_share_following, make_share_sweep
 from .spins import make_pack_spins, make_unpack_spins
 
 
@@ -69,26 +67,38 @@ def _make_visit(spec: Spec, eight: bool) -> Any:
     return make_visit_normal(spec, eight)
 
 
-def make_sweep_packed(spec: Spec, eight: bool) -> Any:
-    """Return `kernel(packed, slots) -> greatest change` [m/s]."""
-    visit, numbers = _make_visit(spec, eight), stride(spec, eight)
+def make_sweep_groups(spec: Spec) -> Any:
+    """Return `kernel(packed, first, last, own) -> greatest change` [m/s] of groups in turn.
 
-    def sweep_singly(packed, slots):
-        most = 0.0
-        for k in range(slots):
-            most = visit(packed, k * numbers, k, most)
-        return most
+    own: where what nothing moves would go (`lane_memory`).
+    """
+    visit, numbers = _make_visit(spec, True), stride(spec, True)
 
-    def sweep_by_eight(packed, slots):
+    def sweep_groups(packed, first, last, own):
         most = zeros()
-        for g in range(slots // WIDTH):
-            most = visit(packed, g * numbers, g * WIDTH, most)
+        for g in range(first, last):
+            most = visit(packed, g * numbers, g * WIDTH, own, most)
         greatest = lane(most, 0)
         for k in range(1, WIDTH):
             greatest = greater(lane(most, k), greatest)
         return greatest
 
-    return kernel(sweep_by_eight if eight else sweep_singly, spec)
+    return kernel(sweep_groups, spec)
+
+
+def make_sweep_packed(spec: Spec, eight: bool) -> Any:
+    """Return `kernel(packed, slots) -> greatest change` [m/s]."""
+    if eight:
+        return make_share_sweep(spec, make_sweep_groups(spec), SWEEP)
+    visit, numbers = _make_visit(spec, False), stride(spec, False)
+
+    def sweep_singly(packed, slots):
+        most = 0.0
+        for k in range(slots):
+            most = visit(packed, k * numbers, k, STRIDE, most)
+        return most
+
+    return kernel(sweep_singly, spec)
 
 
 def make_sweep_together(spec: Spec) -> Any:
@@ -99,20 +109,12 @@ def make_sweep_together(spec: Spec) -> Any:
     the other, and what is read is still near. Greatest changes go to `packed.changes`, the last
     sweep's first.
     """
-    visit, numbers = _make_visit(spec, True), stride(spec, True)
-
-    def sweep_run(packed, first, last):
-        most = zeros()
-        for g in range(first, last):
-            most = visit(packed, g * numbers, g * WIDTH, most)
-        greatest = lane(most, 0)
-        for k in range(1, WIDTH):
-            greatest = greater(lane(most, k), greatest)
-        return greatest
-
-    sweep_run = kernel(sweep_run, spec)
+    sweep_groups = make_sweep_groups(spec)
+    follow = make_share_following(spec, sweep_groups)
 
     def sweep_together(packed, slots, sweeps):
+        if follow(packed, slots, sweeps):
+            return
         groups, behind, changes = slots // WIDTH, packed.reach[0], packed.changes
         runs = (groups + RUN - 1) // RUN
         for k in range(sweeps):
@@ -121,7 +123,8 @@ def make_sweep_together(spec: Spec) -> Any:
             for k in range(sweeps):
                 run = leading - k * behind
                 if 0 <= run < runs:
-                    change = sweep_run(packed, run * RUN, min((run + 1) * RUN, groups))
+                    first, last = run * RUN, min((run + 1) * RUN, groups)
+                    change = sweep_groups(packed, first, last, STRIDE)
                     changes[sweeps - 1 - k] = greater(change, changes[sweeps - 1 - k])
 
     return kernel(sweep_together, spec)

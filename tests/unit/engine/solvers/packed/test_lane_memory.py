@@ -26,22 +26,23 @@ from lavendersim.engine.solvers.packed.lanes import WIDTH, total
 from lavendersim.engine.spec import Spec
 
 BODIES = 11
+OWN = 2  # the line that takes what is written of a line before it
 
 
 @cache
 def doubled(eight: bool) -> Any:
-    """Return a kernel: bodies' first vectors by those of `rows`, the second by minus that."""
+    """Return a kernel: bodies' first vectors by those of `rows`, the second by 1 minus that."""
 
     def by_eights(state, ends, at, rows):
         first, second = take_bodies(state, ends, at)
         factors = take_triples(rows, 0)
-        put_bodies(state, ends, at, first * factors, second - second * factors)
+        put_bodies(state, ends, at, OWN * STRIDE, first * factors, second - second * factors)
 
     def one_by_one(state, ends, at, rows):
         for k in range(WIDTH):
             first, second = take_body(state, ends, at + k)
             factors = take_triple(rows, 4 * k)
-            put_body(state, ends, at + k, first * factors, second - second * factors)
+            put_body(state, ends, at + k, OWN * STRIDE, first * factors, second - second * factors)
 
     return kernel(by_eights if eight else one_by_one, Spec())
 
@@ -49,7 +50,7 @@ def doubled(eight: bool) -> Any:
 @pytest.mark.parametrize("eight", [True, False], ids=["eights", "one by one"])
 def test_each_body_has_its_own_vectors_and_no_other_is_touched(eight: bool, rng) -> None:
     state = rng.normal(size=(BODIES, STRIDE))
-    bodies = rng.permutation(BODIES)[:WIDTH]
+    bodies = OWN + 1 + rng.permutation(BODIES - OWN - 1)[:WIDTH]
     ends = np.concatenate([[-1, -1], bodies * STRIDE])  # from the third on
     factors = rng.normal(size=(3, WIDTH))
     rows = factors.ravel()
@@ -65,13 +66,16 @@ def test_each_body_has_its_own_vectors_and_no_other_is_touched(eight: bool, rng)
     np.testing.assert_array_equal(found.reshape(BODIES, STRIDE), expected)
 
 
-def test_of_a_body_that_is_named_twice_the_last_is_kept(rng) -> None:
-    """The spare body of what fills a group: all lanes write it."""
-    state = rng.normal(size=STRIDE * 2)
-    ends, factors = np.full(WIDTH, STRIDE), rng.normal(size=(3, WIDTH))
-    expected = state[STRIDE : STRIDE + 3] * factors[:, -1]
+@pytest.mark.parametrize("line", [0, OWN - 1])
+def test_what_nothing_moves_is_read_where_it_is_and_written_elsewhere(line: int, rng) -> None:
+    """All lanes write the line of their thread, and the last is kept: nobody reads it."""
+    state = rng.normal(size=STRIDE * (OWN + 1))
+    ends, factors = np.full(WIDTH, line * STRIDE), rng.normal(size=(3, WIDTH))
+    before = state.copy()
     doubled(True)(state, ends, 0, factors.ravel())
-    np.testing.assert_array_equal(state[STRIDE : STRIDE + 3], expected)
+    np.testing.assert_array_equal(state[: OWN * STRIDE], before[: OWN * STRIDE])
+    own = state[OWN * STRIDE :][:3]
+    np.testing.assert_array_equal(own, before[line * STRIDE :][:3] * factors[:, -1])
 
 
 @cache

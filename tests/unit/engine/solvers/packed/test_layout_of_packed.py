@@ -11,7 +11,7 @@ from interpreted import interpreted
 from lavendersim.engine.solvers.packed import layout
 from lavendersim.engine.solvers.packed.lane_memory import STRIDE
 from lavendersim.engine.solvers.packed.lanes import WIDTH
-from lavendersim.engine.solvers.packed.layout import LINE, allocate_packed, begins, stride
+from lavendersim.engine.solvers.packed.layout import HEAD, LINE, allocate_packed, begins, stride
 from lavendersim.engine.spec import Spec
 
 FRICTIONAL = Spec(("friction",))
@@ -79,9 +79,9 @@ def test_no_two_contacts_share_a_number_and_rows_begin_with_a_cache_line(name, e
     assert {b - a for a, b in pairwise(starts)} == {stride(spec, eight)}
 
 
-def test_states_have_one_more_than_bodies_for_lanes_that_are_idle() -> None:
+def test_states_have_lines_before_those_of_bodies_for_what_nothing_moves() -> None:
     packed = allocate_packed(FRICTIONAL, 6, 20, True)
-    assert len(packed.state) == 7 * STRIDE
+    assert len(packed.state) == (HEAD + 6) * STRIDE
     assert len(packed.start) == len(packed.factor) == len(packed.group_of) == 6
     assert len(packed.first) == len(packed.second) == 20 * WIDTH
     assert packed.slot.dtype == np.int64

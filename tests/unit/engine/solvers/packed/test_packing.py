@@ -16,7 +16,7 @@ from interpreted import interpreted, records
 from lavendersim.engine.solvers.packed import packing
 from lavendersim.engine.solvers.packed.lane_memory import STRIDE
 from lavendersim.engine.solvers.packed.lanes import WIDTH
-from lavendersim.engine.solvers.packed.layout import PackedContacts, allocate_packed
+from lavendersim.engine.solvers.packed.layout import HEAD, PackedContacts, allocate_packed
 from lavendersim.engine.solvers.solver import ContactSystem
 from lavendersim.engine.spec import Spec
 
@@ -84,8 +84,10 @@ def test_factors_are_those_of_the_inverse_inertia(spec: Spec, rng) -> None:
         np.testing.assert_allclose(factor @ factor.T, inverse, atol=1e-14)
         assert (np.diag(factor) >= 0.0).all()
     assert not factor_of(memory, 0).any()
-    state = memory.state[: STRIDE * len(scene.bodies)]
+    state = memory.state[STRIDE * HEAD :]
+    assert len(state) == STRIDE * len(scene.bodies)
     assert not state.any()  # nothing has changed yet
+    assert not memory.state[:STRIDE].any()  # nor what nothing moves
 
 
 @EIGHTS
@@ -147,7 +149,7 @@ def test_a_group_has_no_movable_body_twice_and_is_filled_with_nothing(rng) -> No
     assert (np.diff(used) > 0).all()
     assert slots == WIDTH * (used[-1] // WIDTH + 1)
     place = interpreted(packing.make_place(FRICTIONAL, True, 6))
-    spare, previous = STRIDE * len(scene.bodies), [0] * WIDTH
+    previous = [0] * WIDTH
     for group in range(slots // WIDTH):
         own = [int(order[k]) for k in range(len(order)) if used[k] // WIDTH == group]
         movable = [i for c in own for i in PAIRS[c] if i != 0]
@@ -161,9 +163,10 @@ def test_a_group_has_no_movable_body_twice_and_is_filled_with_nothing(rng) -> No
         begins = memory.first[slot], memory.second[slot]
         if slot in used:
             c = order[list(used).index(slot)]
-            assert begins == tuple(STRIDE * i for i in PAIRS[c])
+            # the floor is body 0, and what nothing moves is read from the first line
+            assert begins == tuple(STRIDE * (HEAD + i) if i else 0 for i in PAIRS[c])
         else:
-            assert begins == (spare, spare)
+            assert begins == (0, 0)
             fields = memory.rows[place(slot) : place(slot) + 6 * WIDTH : WIDTH]
             np.testing.assert_array_equal(fields, 0.0)
 
@@ -176,7 +179,7 @@ def test_bodies_leave_with_what_the_state_says_and_contacts_with_their_own_rows(
     order = rng.permutation(len(PAIRS))
     system, memory, _ = packed(scene, FRICTIONAL, eight, order)
     before, change = stacked(scene.velocities), rng.normal(size=(len(scene.bodies), STRIDE))
-    memory.state[: change.size] = change.ravel()
+    memory.state[HEAD * STRIDE :] = change.ravel()
     place = interpreted(packing.make_place(FRICTIONAL, eight, 6))
     for k, c in enumerate(order):
         memory.rows[place(memory.slot[k])] = 10.0 + c

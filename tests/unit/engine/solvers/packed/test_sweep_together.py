@@ -10,16 +10,17 @@ import pytest
 from interpreted import interpreted
 from packed_scenes import BLOCKS, found
 
-from lavendersim.engine.solvers.packed import late, packing, sweep
+from lavendersim.engine.solvers.packed import late, packing, sweep, team_sweeps
 from lavendersim.engine.solvers.packed.lanes import WIDTH
 from lavendersim.engine.solvers.packed.layout import TOGETHER
 from lavendersim.engine.spec import Spec
+from lavendersim.engine.team import allocate_team
 from tests.benchmarks.prepared_contacts import Solve
 
 RUN = 2  # groups, here
 
 
-def visit(packed: Any, at: int, slot: int, most: Any) -> Any:
+def visit(packed: Any, at: int, slot: int, own: int, most: Any) -> Any:
     """Stand for the update of eight contacts: another order of visits gives other states."""
     for k in range(slot, slot + WIDTH):
         a, b = packed.first[k], packed.second[k]
@@ -38,6 +39,7 @@ def together(monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setattr(sweep, "zeros", lambda: 0.0)
     monkeypatch.setattr(sweep, "lane", lambda x, k: x)
     monkeypatch.setattr(sweep, "greater", max)
+    monkeypatch.setattr(team_sweeps, "load", lambda words, at: words[at])  # there is no team
     return interpreted(sweep.make_sweep_together(Spec()))
 
 
@@ -50,7 +52,12 @@ def chain(groups: int, near: int, rng: np.random.Generator) -> SimpleNamespace:
     state = rng.normal(size=slots + near)
     reach = max(np.ptp(runs[(first == i) | (second == i)]) for i in {*first, *second})
     return SimpleNamespace(
-        first=first, second=second, state=state, reach=np.array([reach]), changes=np.zeros(TOGETHER)
+        first=first,
+        second=second,
+        state=state,
+        reach=np.array([reach]),
+        changes=np.zeros(TOGETHER),
+        team=allocate_team(0),
     )
 
 
@@ -63,7 +70,7 @@ def test_the_bits_are_those_of_one_after_the_other(groups, sweeps, together, rng
     for _ in range(sweeps):
         most = 0.0
         for g in range(groups):
-            most = visit(alone, 0, g * WIDTH, most)
+            most = visit(alone, 0, g * WIDTH, 0, most)
         changes.append(most)
     together(packed, groups * WIDTH, sweeps)
     assert packed.state.tobytes() == state.tobytes()
