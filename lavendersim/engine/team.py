@@ -1,11 +1,13 @@
 """A team of threads that share the sweeps of a step: forked and joined within its kernel.
 
 The thread that makes the step is member 0. The others wait in a kernel of their own while a call of
-the step lasts. What is shared is cut into pieces, and a piece is made by whom claims it: first by the
-member that it is meant for, whose caches have it, else by any that has nothing to do. Nobody waits
-for a member that claims nothing, so a thread that the system does not run costs no time.
+the step lasts. What is shared is cut into pieces, and a piece is made by whom claims it: first by
+the member that it is meant for, whose caches have it, else by any that has nothing to do. Nobody
+waits for a member that claims nothing, so a thread that the system does not run costs no time.
 
-Pieces that are made side by side share no movable body. Who makes which changes no bit.
+Pieces that are made side by side share no movable body. Who makes which changes no bit. So the
+clock may say whether a task is shared: it is made alone and shared in turns, twice of every ROUND,
+and otherwise as it took less. What two caches tell each other may take longer than the task.
 """
 
 from __future__ import annotations
@@ -22,9 +24,9 @@ from lavendersim.errors import UsageError
 from .atomics import fetch_add, load, raise_to, store, wait
 from .compile import inner
 
-# Members of a team at most, and numbers of a line of the processor's cache.
-MOST, LINE = 32, 8
-# Words, each in a line of its own: the fork, pieces that are made, members, and what the task needs.
+# Members of a team at most, and numbers of two lines of the processor's cache: it asks for both.
+MOST, LINE = 32, 16
+# Words, each in lines of its own: the fork, pieces that are made, members, what the task needs.
 FORK, MADE, MEMBERS, FIRST, SECOND, THIRD = range(0, 6 * LINE, LINE)
 WORDS = THIRD + LINE
 # What the fork says: OFTEN times how often there was one, SIZE times the members, and the task.
@@ -32,6 +34,10 @@ OFTEN, SIZE = 1 << 16, 1 << 8
 # How many threads a step of a run has: set by `lavender run --threads`, found by its processes.
 THREADS_VARIABLE: Final = "LAVENDER_THREADS"
 LEAVE, IDLE, SWEEP, FOLLOW, PUSH = range(5)
+# Of every task: how often it was made, and the least time alone and shared, in this round [ns].
+OFTEN_MADE, ALONE, SHARED, TRIAL = range(4)
+ROUND, TWICE = 64, 2
+NEVER = 2**62
 
 
 class TeamMemory(NamedTuple):
@@ -40,11 +46,21 @@ class TeamMemory(NamedTuple):
     words: np.ndarray  # (WORDS,) int64
     claims: np.ndarray  # (pieces,) int64, the fork in which each was claimed last
     greatest: np.ndarray  # (MOST * LINE,) changes of each member's pieces, sweep by sweep
+    trials: np.ndarray  # (TRIAL * (PUSH + 1),) int64, of each task; nobody else reads it
 
 
 def allocate_team(pieces: int) -> TeamMemory:
     """Return the memory of a team of one, for tasks of so many pieces."""
-    return TeamMemory(np.zeros(WORDS, np.int64), np.zeros(pieces, np.int64), np.zeros(MOST * LINE))
+    greatest = _alone(MOST * LINE).view(np.float64)
+    claims, trials = np.zeros(pieces, np.int64), np.zeros(TRIAL * (PUSH + 1), np.int64)
+    return TeamMemory(_alone(WORDS), claims, greatest, trials)
+
+
+def _alone(count: int) -> np.ndarray:
+    """Return zeros in lines of the cache that nothing else lies in: who waits there looks often."""
+    padded = np.zeros(count + 2 * LINE, np.int64)
+    begin = -padded.ctypes.data // padded.itemsize % LINE
+    return padded[begin : begin + count]
 
 
 @inner
@@ -70,6 +86,31 @@ def fork(team, most, task, given):
     word = (often + 1) * OFTEN + size * SIZE + task
     store(words, FORK, word)
     return word
+
+
+@inner
+def is_worth_it(trials, task):
+    """Return whether a task is to be shared, by what it took before."""
+    at = TRIAL * task
+    turn = trials[at + OFTEN_MADE] % ROUND
+    if turn < TWICE:
+        return False
+    if turn < 2 * TWICE:
+        return True
+    return trials[at + SHARED] < trials[at + ALONE]
+
+
+@inner
+def note_time(trials, task, shared, spent):
+    """Note how long a task took [ns], shared or alone."""
+    at = TRIAL * task
+    turn = trials[at + OFTEN_MADE] % ROUND
+    if turn == 0:
+        trials[at + ALONE], trials[at + SHARED] = NEVER, NEVER
+    if turn < 2 * TWICE:
+        kind = at + (SHARED if shared else ALONE)
+        trials[kind] = min(trials[kind], spent)
+    trials[at + OFTEN_MADE] += 1
 
 
 @inner

@@ -125,6 +125,30 @@ def test_no_thread_outlives_a_call(fails: bool) -> None:
     assert memory.words[team.MEMBERS] == 0
 
 
+def test_a_task_is_shared_where_that_took_less() -> None:
+    """Of every 64 times two are made alone, two are shared, and 60 as what took least says."""
+    for alone, shared in ((10, 7), (7, 10)):
+        trials, found = np.zeros_like(team.allocate_team(0).trials), []
+        for _ in range(3 * team.ROUND):
+            found.append(bool(team.is_worth_it(trials, team.PUSH)))
+            team.note_time(trials, team.PUSH, found[-1], shared if found[-1] else alone)
+        of_round = [False] * 2 + [True] * 2 + [shared < alone] * (team.ROUND - 4)
+        assert found == 3 * of_round
+        assert not trials[: team.TRIAL * team.PUSH].any()  # of other tasks
+
+
+def test_what_took_long_once_is_tried_again() -> None:
+    trials = team.allocate_team(0).trials
+    for turn in range(team.ROUND):
+        shared = team.is_worth_it(trials, team.SWEEP)
+        team.note_time(trials, team.SWEEP, shared, 1000 if shared else 10)
+    for turn in range(2 * team.TWICE):
+        shared = team.is_worth_it(trials, team.SWEEP)
+        assert shared == (turn >= team.TWICE)
+        team.note_time(trials, team.SWEEP, shared, 5 if shared else 10)
+    assert team.is_worth_it(trials, team.SWEEP)
+
+
 def test_the_environment_says_how_many_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(team.THREADS_VARIABLE, raising=False)
     assert team.threads_asked() == 1

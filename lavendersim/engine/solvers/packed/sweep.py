@@ -22,8 +22,8 @@ from .lanes import WIDTH, greater, lane, zeros
 from .layout import RUN, begins, stride
 from .normals import make_pack_normal, make_unpack_normal, make_visit_normal
 from .packing import make_pack_rows, make_unpack_rows
-from .team_sweeps import make_share_following, make_share_sweep
 from .spins import make_pack_spins, make_unpack_spins
+from .team_sweeps import make_share_following, make_share_sweep
 
 
 def can_pack(spec: Spec) -> bool:
@@ -110,11 +110,8 @@ def make_sweep_together(spec: Spec) -> Any:
     sweep's first.
     """
     sweep_groups = make_sweep_groups(spec)
-    follow = make_share_following(spec, sweep_groups)
 
-    def sweep_together(packed, slots, sweeps):
-        if follow(packed, slots, sweeps):
-            return
+    def follow(packed, slots, sweeps):
         groups, behind, changes = slots // WIDTH, packed.reach[0], packed.changes
         runs = (groups + RUN - 1) // RUN
         for k in range(sweeps):
@@ -127,7 +124,7 @@ def make_sweep_together(spec: Spec) -> Any:
                     change = sweep_groups(packed, first, last, STRIDE)
                     changes[sweeps - 1 - k] = greater(change, changes[sweeps - 1 - k])
 
-    return kernel(sweep_together, spec)
+    return make_share_following(spec, sweep_groups, kernel(follow, spec))
 
 
 class PackedCarry(NamedTuple):

@@ -14,6 +14,7 @@ from typing import Any
 from ...atomics import fetch_add, load
 from ...compile import inner, kernel
 from ...spec import Spec
+from ...step_address import nanoseconds
 from ...team import (
     FOLLOW,
     FORK,
@@ -30,6 +31,8 @@ from ...team import (
     finish,
     fork,
     greatest_of,
+    is_worth_it,
+    note_time,
     size_of,
 )
 from .lane_memory import STRIDE
@@ -44,7 +47,7 @@ EACH = 2
 
 @inner
 def _distance(reach, size):
-    """Return how many runs a sweep is behind the last: above reach, and each run is one member's."""
+    """Return how many runs a sweep is behind the last: each run is one member's in all of them."""
     distance = reach + 1
     while True:
         a, b = distance, size
@@ -160,37 +163,50 @@ def make_share_sweep(spec: Spec, visit_groups: Any, task: int) -> Any:
     share_stages = make_share_stages(spec, visit_groups)
 
     def sweep(packed, slots):
-        team, count = packed.team, packed.counts[0]
-        if count > 0:
+        team, count, word = packed.team, packed.counts[0], 0
+        if count == 0:
+            return visit_groups(packed, 0, slots // WIDTH, STRIDE)
+        begin = nanoseconds()
+        if is_worth_it(team.trials, task):
             word = fork(team, MOST, task, (count, 0, 0))
-            if word > 0:
-                share_stages(packed, 0, word)
-                await_pieces(team.words, EACH * size_of(word) * count, word)
-                return greatest_of(team, word, 0)
-        return visit_groups(packed, 0, slots // WIDTH, STRIDE)
+        if word > 0:
+            share_stages(packed, 0, word)
+            await_pieces(team.words, EACH * size_of(word) * count, word)
+            greatest = greatest_of(team, word, 0)
+        else:
+            greatest = visit_groups(packed, 0, slots // WIDTH, STRIDE)
+        note_time(team.trials, task, word > 0, nanoseconds() - begin)
+        return greatest
 
     return kernel(sweep, spec)
 
 
-def make_share_following(spec: Spec, visit_groups: Any) -> Any:
-    """Return `kernel(packed, slots, sweeps) -> whether` a team has made these sweeps.
+def make_share_following(spec: Spec, visit_groups: Any, alone: Any) -> Any:
+    """Return `kernel(packed, slots, sweeps)`: these sweeps, by the team where that pays.
 
-    Greatest changes go to `packed.changes`, the last sweep's first.
+    Greatest changes go to `packed.changes`, the last sweep's first. alone: kernel(packed, slots,
+    sweeps), the same by one thread.
     """
     share_runs = make_share_runs(spec, visit_groups)
 
     def follow(packed, slots, sweeps):
-        team, groups = packed.team, slots // WIDTH
+        team, groups, word = packed.team, slots // WIDTH, 0
         size = min(1 + load(team.words, MEMBERS), sweeps)
         if size < 2:
-            return False
-        behind = _distance(packed.reach[0], size)
-        word = fork(team, size, FOLLOW, (groups, sweeps, behind))
-        share_runs(packed, 0, word)
-        await_pieces(team.words, (groups + RUN - 1) // RUN * sweeps, word)
-        for k in range(sweeps):
-            packed.changes[sweeps - 1 - k] = greatest_of(team, word, k)
-        return True
+            alone(packed, slots, sweeps)
+            return
+        begin = nanoseconds()
+        if is_worth_it(team.trials, FOLLOW):
+            behind = _distance(packed.reach[0], size)
+            word = fork(team, size, FOLLOW, (groups, sweeps, behind))
+        if word > 0:
+            share_runs(packed, 0, word)
+            await_pieces(team.words, (groups + RUN - 1) // RUN * sweeps, word)
+            for k in range(sweeps):
+                packed.changes[sweeps - 1 - k] = greatest_of(team, word, k)
+        else:
+            alone(packed, slots, sweeps)
+        note_time(team.trials, FOLLOW, word > 0, nanoseconds() - begin)
 
     return kernel(follow, spec)
 

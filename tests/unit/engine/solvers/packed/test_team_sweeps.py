@@ -14,6 +14,7 @@ from interpreted import interpreted
 from packed_scenes import BLOCKS, found
 
 from lavendersim.engine.atomics import CAN_WAIT
+from lavendersim.engine.compile import inner
 from lavendersim.engine.solvers.packed import late, packing, sweep, team_sweeps
 from lavendersim.engine.solvers.packed.lane_memory import STRIDE
 from lavendersim.engine.solvers.packed.lanes import WIDTH
@@ -95,6 +96,12 @@ def test_runs_side_by_side_are_far_apart_and_each_is_one_members(reach: int, siz
     assert not any(np.gcd(near, size) == 1 for near in range(reach + 1, distance))
 
 
+@inner
+def always(trials, task):
+    """Share every task, whatever it takes."""
+    return True
+
+
 @pytest.fixture
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let small scenes have what large ones have."""
@@ -102,6 +109,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(module, "RUN", 2)
     monkeypatch.setattr(team_sweeps, "FEWEST_GROUPS", 2)
     monkeypatch.setattr(team_sweeps, "WORTH_IT", 4)
+    monkeypatch.setattr(team_sweeps, "is_worth_it", always)
 
 
 def solved(threads: int, sweeps: int, solver: str) -> tuple[bytes, Any]:
