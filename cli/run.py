@@ -185,7 +185,7 @@ def run(
             "--dask": dask is not None,
         }
         overrides = overrides_of(values, axes, engine)
-        _run_shard(configs, overrides, strict, _Place(into, shard), jobs, threads, asked)
+        _run_shard(configs, overrides, strict, _Place(into, shard, threads), jobs, asked)
         return
 
     if live:
@@ -327,6 +327,7 @@ class _Place(NamedTuple):
 
     into: Path | None
     shard: str | None
+    threads: int | None
 
 
 def _run_shard(
@@ -335,13 +336,12 @@ def _run_shard(
     strict: bool,
     place: _Place,
     jobs: int,
-    threads: int | None,
     asked: dict[str, bool],
 ) -> None:
     """Run cells into a folder that other workers share; nothing is judged before the merge."""
     from lavendersim.errors import UsageError
 
-    into, shard = place
+    into, shard, threads = place
     if into is None:
         raise UsageError("--shard: expected --into DIR, the folder that its cells are run into")
     if refused := [option for option, given in asked.items() if given]:

@@ -1,9 +1,9 @@
 """A team of threads that share the sweeps of a step: forked and joined within its kernel.
 
 The thread that makes the step is member 0. The others wait in a kernel of their own while a call of
-the step lasts. What is shared is cut into pieces, and a piece is made by whom claims it: first by
-the member that it is meant for, whose caches have it, else by any that has nothing to do. Nobody
-waits for a member that claims nothing, so a thread that the system does not run costs no time.
+the step lasts. What is shared is cut into pieces, and a member claims a piece to make it: first
+those that are meant for it, whose data its caches have, then any that are left. Nobody waits for a
+member that claims nothing, so a thread that the system does not run costs no time.
 
 Pieces that are made side by side share no movable body. Who makes which changes no bit. So the
 clock may say whether a task is shared: it is made alone and shared in turns, twice of every ROUND,
@@ -12,14 +12,11 @@ and otherwise as it took less. What two caches tell each other may take longer t
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from threading import Thread
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-
-from lavendersim.errors import UsageError
 
 from .atomics import fetch_add, load, raise_to, store, wait
 from .compile import inner
@@ -31,8 +28,6 @@ FORK, MADE, MEMBERS, FIRST, SECOND, THIRD = range(0, 6 * LINE, LINE)
 WORDS = THIRD + LINE
 # What the fork says: OFTEN times how often there was one, SIZE times the members, and the task.
 OFTEN, SIZE = 1 << 16, 1 << 8
-# How many threads a step of a run has: set by `lavender run --threads`, found by its processes.
-THREADS_VARIABLE: Final = "LAVENDER_THREADS"
 LEAVE, IDLE, SWEEP, FOLLOW, PUSH = range(5)
 # Of every task: how often it was made, and the least time alone and shared, in this round [ns].
 OFTEN_MADE, ALONE, SHARED, TRIAL = range(4)
@@ -192,15 +187,3 @@ def with_team(
             if other.ident is not None:
                 other.join()
         words[MEMBERS] = 0
-
-
-def threads_asked() -> int:
-    """Return how many threads the environment asks for, one by default.
-
-    Raises UsageError where it is no whole number from 1 on.
-    """
-    asked = os.environ.get(THREADS_VARIABLE, "1")
-    if not asked.isdecimal() or not int(asked):
-        expected = f"expected a whole number from 1 to {MOST}"
-        raise UsageError(f"{THREADS_VARIABLE}: {expected}, found {asked!r}")
-    return min(int(asked), MOST)

@@ -18,7 +18,6 @@ from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
 from lavendersim.engine.sources import source_hash
 from lavendersim.engine.step_doubling import MOST_SUBSTEPS
-from lavendersim.engine.team import threads_asked
 from lavendersim.engine.together import EngineAdvance, advance_together
 from lavendersim.garbage import uncollected
 from lavendersim.measures import applies, outcomes_of
@@ -45,6 +44,7 @@ from .interruption import deferred, raise_noted
 from .measured import Measured, measure_cell
 from .problem_dump import ProblemDump
 from .run_directory import RunCell
+from .threads import threads_asked
 
 # Called when the kernel of a cell is there, with what reads how many steps are done.
 Began = Callable[[Callable[[], int]], None]

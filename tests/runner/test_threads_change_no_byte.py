@@ -12,7 +12,7 @@ import lavendersim
 from lavendersim.engine import engine
 from lavendersim.engine.atomics import CAN_WAIT
 from lavendersim.engine.solvers.packed import team_sweeps
-from lavendersim.engine.team import THREADS_VARIABLE
+from lavendersim.runner.threads import VARIABLE
 
 # Layers of spheres that touch their neighbours: 540 contacts, 36 with the floor.
 LAYERS = """\
@@ -55,7 +55,7 @@ def test_logs_are_those_of_one_thread(tmp_path: Path, monkeypatch: pytest.Monkey
     monkeypatch.setattr(engine, "with_team", counted)
     config = write(tmp_path, LAYERS)
     for threads in (1, 2, 5):
-        monkeypatch.setenv(THREADS_VARIABLE, str(threads))
+        monkeypatch.setenv(VARIABLE, str(threads))
         finished = lavendersim.run(config, root=tmp_path / str(threads))
         (cell,) = finished.run.cells
         logs.append(cell.path.read_bytes())

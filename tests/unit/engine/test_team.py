@@ -11,7 +11,6 @@ import pytest
 from lavendersim.engine import team
 from lavendersim.engine.atomics import CAN_WAIT, fetch_add, load
 from lavendersim.engine.compile import inner
-from lavendersim.errors import UsageError
 
 pytestmark = pytest.mark.skipif(not CAN_WAIT, reason="threads wait by what POSIX has")
 PIECES, FORKS, THREADS = 24, 300, 4
@@ -139,7 +138,7 @@ def test_a_task_is_shared_where_that_took_less() -> None:
 
 def test_what_took_long_once_is_tried_again() -> None:
     trials = team.allocate_team(0).trials
-    for turn in range(team.ROUND):
+    for _ in range(team.ROUND):
         shared = team.is_worth_it(trials, team.SWEEP)
         team.note_time(trials, team.SWEEP, shared, 1000 if shared else 10)
     for turn in range(2 * team.TWICE):
@@ -147,15 +146,3 @@ def test_what_took_long_once_is_tried_again() -> None:
         assert shared == (turn >= team.TWICE)
         team.note_time(trials, team.SWEEP, shared, 5 if shared else 10)
     assert team.is_worth_it(trials, team.SWEEP)
-
-
-def test_the_environment_says_how_many_threads(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv(team.THREADS_VARIABLE, raising=False)
-    assert team.threads_asked() == 1
-    for given, threads in (("3", 3), ("32", 32), ("1000", team.MOST)):
-        monkeypatch.setenv(team.THREADS_VARIABLE, given)
-        assert team.threads_asked() == threads
-    for given in ("0", "-1", "two", "", "1.5"):
-        monkeypatch.setenv(team.THREADS_VARIABLE, given)
-        with pytest.raises(UsageError, match="LAVENDER_THREADS: expected a whole number from 1"):
-            team.threads_asked()

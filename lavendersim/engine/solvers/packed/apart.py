@@ -66,8 +66,8 @@ def _make_visit_normals(spec: Spec) -> Any:
         p = n * change
         va = va - p * take_eight(rows, at + PER_MASS_A * WIDTH)
         vb = vb + p * take_eight(rows, at + PER_MASS_B * WIDTH)
-        put_bodies(state, first, slot, own, va, ya + arm_a * change)
-        put_bodies(state, second, slot, own, vb, yb + arm_b * change)
+        put_bodies(state, first, slot, own, (va, ya + arm_a * change))
+        put_bodies(state, second, slot, own, (vb, yb + arm_b * change))
         return greater(magnitude(change), most)
 
     return kernel(visit_normals, spec)

@@ -211,8 +211,8 @@ def make_visit_block(spec: Spec, eight: bool) -> Any:
             ya, yb, most = visit_torsion(rows, at, new_n, ya, yb, most)
         if rolling:
             ya, yb, most = visit_roll(rows, at, new_n, ya, yb, most)
-        put_state(state, first, slot, own, va, ya)
-        put_state(state, second, slot, own, vb, yb)
+        put_state(state, first, slot, own, (va, ya))
+        put_state(state, second, slot, own, (vb, yb))
         most = greater(magnitude(change_n) * take(rows, at, K_N), most)
         across = greater(magnitude(change_1), magnitude(change_2))
         return greater(across * take(rows, at, K_T), most)

@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from llvmlite import ir
-from numba.core import types
+from numba.core import cgutils, types
 from numba.core.typing.templates import signature
 
 from .lanes import (
@@ -122,17 +122,17 @@ def take_body(typing, state, ends, at):
 
 
 @primitive
-def put_body(typing, state, ends, at, own, first, second):
+def put_body(typing, state, ends, at, own, vectors):
     """Write the two vectors of a body back; own: the line of what nothing moves."""
 
     def emit(context, builder, sig, args):
         nothing = ir.Constant(FOUR, [0.0] * 4)
         halves = _halves(0, context, builder, sig, args, args[3])
-        for vector, half in zip(args[4:], halves, strict=True):
+        for vector, half in zip(cgutils.unpack_tuple(builder, args[4]), halves, strict=True):
             _store(builder, shuffled(builder, vector, nothing, _LAST), half)
         return context.get_dummy_value()
 
-    return signature(types.void, state, ends, at, own, first, second), emit
+    return signature(types.void, state, ends, at, own, vectors), emit
 
 
 def _swapped(builder: Any, rows: list[Any], distance: int) -> list[Any]:
@@ -176,7 +176,7 @@ def take_bodies(typing, state, ends, at):
 
 
 @primitive
-def put_bodies(typing, state, ends, at, own, first, second):
+def put_bodies(typing, state, ends, at, own, vectors):
     """Write the two Triples of eight bodies back; a body named twice keeps the last.
 
     own: the line of what nothing moves.
@@ -185,7 +185,7 @@ def put_bodies(typing, state, ends, at, own, first, second):
     def emit(context, builder, sig, args):
         lines = [_halves(k, context, builder, sig, args, args[3]) for k in range(WIDTH)]
         nothing = ir.Constant(EIGHT, [0.0] * WIDTH)
-        for half, triples in enumerate(args[4:]):
+        for half, triples in enumerate(cgutils.unpack_tuple(builder, args[4])):
             columns = [*parts_of(builder, triples), nothing]
             for k, both in enumerate(_swapped(builder, _swapped(builder, columns, 1), 2)):
                 for body in (k, k + 4):
@@ -194,4 +194,4 @@ def put_bodies(typing, state, ends, at, own, first, second):
                     _store(builder, four, lines[body][half])
         return context.get_dummy_value()
 
-    return signature(types.void, state, ends, at, own, first, second), emit
+    return signature(types.void, state, ends, at, own, vectors), emit

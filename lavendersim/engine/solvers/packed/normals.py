@@ -105,8 +105,8 @@ def make_visit_normal(spec: Spec, eight: bool) -> Any:
         if levers:
             ya = ya + arm_a * change
             yb = yb + arm_b * change
-        put_state(state, first, slot, own, va, ya)
-        put_state(state, second, slot, own, vb, yb)
+        put_state(state, first, slot, own, (va, ya))
+        put_state(state, second, slot, own, (vb, yb))
         return greater(magnitude(change) * take_number(rows, at + K_NORMAL * step), most)
 
     return kernel(visit_normal, spec)

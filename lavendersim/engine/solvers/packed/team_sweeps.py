@@ -39,6 +39,8 @@ from .lane_memory import STRIDE
 from .lanes import WIDTH
 from .layout import HEAD, RUN
 
+# As types go it has the argument that only the compiler gives it.
+_now: Any = nanoseconds
 # Groups from which on a stage is shared, and those in shared stages from which on a sweep is.
 FEWEST_GROUPS, WORTH_IT = 16, 64
 # Pieces of a shared stage for each member: what one that comes late has not claimed others make.
@@ -166,7 +168,7 @@ def make_share_sweep(spec: Spec, visit_groups: Any, task: int) -> Any:
         team, count, word = packed.team, packed.counts[0], 0
         if count == 0:
             return visit_groups(packed, 0, slots // WIDTH, STRIDE)
-        begin = nanoseconds()
+        begin = _now()
         if is_worth_it(team.trials, task):
             word = fork(team, MOST, task, (count, 0, 0))
         if word > 0:
@@ -175,7 +177,7 @@ def make_share_sweep(spec: Spec, visit_groups: Any, task: int) -> Any:
             greatest = greatest_of(team, word, 0)
         else:
             greatest = visit_groups(packed, 0, slots // WIDTH, STRIDE)
-        note_time(team.trials, task, word > 0, nanoseconds() - begin)
+        note_time(team.trials, task, word > 0, _now() - begin)
         return greatest
 
     return kernel(sweep, spec)
@@ -195,7 +197,7 @@ def make_share_following(spec: Spec, visit_groups: Any, alone: Any) -> Any:
         if size < 2:
             alone(packed, slots, sweeps)
             return
-        begin = nanoseconds()
+        begin = _now()
         if is_worth_it(team.trials, FOLLOW):
             behind = _distance(packed.reach[0], size)
             word = fork(team, size, FOLLOW, (groups, sweeps, behind))
@@ -206,7 +208,7 @@ def make_share_following(spec: Spec, visit_groups: Any, alone: Any) -> Any:
                 packed.changes[sweeps - 1 - k] = greatest_of(team, word, k)
         else:
             alone(packed, slots, sweeps)
-        note_time(team.trials, FOLLOW, word > 0, nanoseconds() - begin)
+        note_time(team.trials, FOLLOW, word > 0, _now() - begin)
 
     return kernel(follow, spec)
 

@@ -36,13 +36,15 @@ def doubled(eight: bool) -> Any:
     def by_eights(state, ends, at, rows):
         first, second = take_bodies(state, ends, at)
         factors = take_triples(rows, 0)
-        put_bodies(state, ends, at, OWN * STRIDE, first * factors, second - second * factors)
+        put_bodies(state, ends, at, OWN * STRIDE, (first * factors, second - second * factors))
 
     def one_by_one(state, ends, at, rows):
         for k in range(WIDTH):
             first, second = take_body(state, ends, at + k)
             factors = take_triple(rows, 4 * k)
-            put_body(state, ends, at + k, OWN * STRIDE, first * factors, second - second * factors)
+            put_body(
+                state, ends, at + k, OWN * STRIDE, (first * factors, second - second * factors)
+            )
 
     return kernel(by_eights if eight else one_by_one, Spec())
 
