@@ -20,7 +20,7 @@ from lavendersim.experiment.resolve.cell import resolve_cell
 from lavendersim.experiment.resolve.formulas import Computed
 from lavendersim.experiment.resolve.placement import SceneError
 from lavendersim.experiment.sweeps.axes import SweepPoint
-from lavendersim.experiment.sweeps.starts import class_of
+from lavendersim.experiment.sweeps.numbers_of_bodies import class_of
 from lavendersim.experiment.text.node import Node, Path, key_mark
 from lavendersim.experiment.text.report import Report
 from lavendersim.quantities.model import ConfigModel
@@ -96,10 +96,12 @@ class Cell:
         """Keep the config of this cell, which was built before."""
         object.__setattr__(self, "_built", config)  # what is frozen is what the file says
 
-    @property
-    def likeness(self) -> tuple[Hashable, ...]:
-        """What it has in common with cells that differ in how bodies start alone."""
-        return id(self._root), self.divisor, *class_of(self._point)
+    def likeness(self, masses: bool = True) -> tuple[Hashable, ...]:
+        """Return what it has in common with cells that differ in numbers of bodies alone.
+
+        In how these start and, unless `masses` is false, in how heavy they are.
+        """
+        return id(self._root), self.divisor, *class_of(self._point, masses)
 
     @property
     def file(self) -> str:
@@ -135,9 +137,12 @@ class Cell:
         return hashlib.sha256(self.config.as_json().encode()).hexdigest()
 
 
-def alike(cells: Iterable[Cell]) -> list[list[Cell]]:
-    """Return the cells in classes whose members differ in how bodies start alone."""
+def alike(cells: Iterable[Cell], masses: bool = True) -> list[list[Cell]]:
+    """Return the cells in classes whose members differ in numbers of bodies alone.
+
+    In how these start and, unless `masses` is false, in how heavy they are.
+    """
     classes: dict[tuple[Hashable, ...], list[Cell]] = {}
     for cell in cells:
-        classes.setdefault(cell.likeness, []).append(cell)
+        classes.setdefault(cell.likeness(masses), []).append(cell)
     return list(classes.values())

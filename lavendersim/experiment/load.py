@@ -25,10 +25,10 @@ from lavendersim.experiment.models.tree import swept_values
 from lavendersim.experiment.own_measures import with_own_measures
 from lavendersim.experiment.resolve.formulas import with_numbers
 from lavendersim.experiment.sweeps import axes as sweep
+from lavendersim.experiment.sweeps.numbers_of_bodies import is_valid, varies_numbers
 from lavendersim.experiment.sweeps.option_overrides import SET, check_untouched, with_overrides
 from lavendersim.experiment.sweeps.reduced_length import at_reduced_length, check_reduced_length
 from lavendersim.experiment.sweeps.solver_override import with_solver
-from lavendersim.experiment.sweeps.starts import is_valid, varies_starts
 from lavendersim.experiment.text.file import read_file
 from lavendersim.experiment.text.former import with_new_spellings
 from lavendersim.experiment.text.node import Node, key_mark
@@ -181,7 +181,7 @@ def _check_others(
     if report.defects or count > MOST_CELLS_CHECKED:
         for number, (axis, point) in enumerate(sweep.covering_points(axes)):
             if number < MOST_CELLS_CHECKED or not (
-                axis is None or not varies_starts(axis) or is_valid(point, axis, root)
+                axis is None or not varies_numbers(axis) or is_valid(point, axis, root)
             ):
                 build_cell(root, point, report)
     cells: list[Cell] = []

@@ -7,7 +7,9 @@ list them before anything has run. An expectation that selects no cell is one cl
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
 from typing import Any, Final, NamedTuple, Protocol
 
 from lavendersim.errors import LavenderError, NotReportedError
@@ -68,7 +70,7 @@ def cells_of_claims(experiment: _Planned) -> dict[str, int]:
 def _to_judge(experiment: _Planned) -> list[Claim | controls.ControlTrial]:
     """Return what will be judged: claims that no control is on, then the negative controls."""
     cells, always = experiment.cells(), experiment.always
-    claims = _claims(experiment.measures, experiment.expectations, cells) + _checks(always, cells)
+    claims = list(_claims(experiment.measures, experiment.expectations, cells, always))
     stops = always is not None and always.stop
     left = controls.uncontrolled(claims, experiment.controls, cells, stops)
     return [*left, *controls.trials(claims, experiment.controls, cells)]
@@ -89,7 +91,10 @@ def judge(
     values: measures of these cells that were taken already; outcomes: of the checks of `always`.
     """
     values = values or Values(measures)
-    claims = _claims(measures, expectations, cells) + _checks(always, cells)
+    found = _claims(measures, expectations, cells, always)
+    if not meant_to_fail:  # of many cells their claims take more memory than the verdicts
+        return [_judged(claim, values, outcomes or {}) for claim in found]
+    claims = list(found)
     raw = {claim.node: _judged(claim, values, outcomes or {}) for claim in claims}
     stops = always is not None and always.stop
     left = controls.uncontrolled(claims, meant_to_fail, cells, stops)
@@ -100,32 +105,27 @@ def judge(
 
 
 def _claims(
-    measures: Measures, expectations: Sequence[ExpectSpec], cells: Sequence[Any]
-) -> list[Claim]:
-    """Return the claims of the expectations, in their order and that of the cells."""
-    claims: list[Claim] = []
+    measures: Measures,
+    expectations: Sequence[ExpectSpec],
+    cells: Sequence[Any],
+    always: Always | None,
+) -> Iterator[Claim]:
+    """Yield the claims of the expectations, in their order and that of the cells.
+
+    Behind them the checks of every step: cell by cell, in the order of CHECKS.
+    """
     for expectation in expectations:
         name = expectation.name
         chosen = select(cells, measures[expectation.measure].at, expectation.at)
         if not expectation.per_cell or not chosen:
-            claims.append(Claim(name, name, tuple(chosen), expectation))
+            yield Claim(name, name, tuple(chosen), expectation)
             continue
-        nodes = nodes_of(name, chosen, expectation.at)
-        claims += [
-            Claim(name, node, (cell,), expectation)
-            for node, cell in zip(nodes, chosen, strict=True)
-        ]
-    return claims
-
-
-def _checks(always: Always | None, cells: Sequence[Any]) -> list[Claim]:
-    """Return the checks of every step: cell by cell, in the order of CHECKS."""
+        for place, cell in zip(_places_of(chosen, expectation.at), chosen, strict=True):
+            yield Claim(name, _node(name, place), (cell,), expectation)
     names = checks_of(always)
-    return [
-        Claim(name, _node(f"{PREFIX}{name}", place), (cell,))
-        for cell, place in zip(cells, _places_of(cells, {}), strict=True)
-        for name in names
-    ]
+    for cell, place in zip(cells, _places_of(cells, {}), strict=True):
+        for name in names:
+            yield Claim(name, _node(f"{PREFIX}{name}", place), (cell,))
 
 
 def nodes_of(name: str, cells: Sequence[Any], selection: Mapping[str, Any]) -> list[str]:
@@ -133,13 +133,12 @@ def nodes_of(name: str, cells: Sequence[Any], selection: Mapping[str, Any]) -> l
     return [_node(name, place) for place in _places_of(cells, selection)]
 
 
-def _places_of(cells: Sequence[Any], selection: Mapping[str, Any]) -> list[str]:
-    """Return what tells each of some cells from the others; empty where nothing does."""
+def _places_of(cells: Sequence[Any], selection: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what tells each of some cells from the others; empty where nothing does."""
     axes = distinguishing_axes(cells, selection)
-    return [
-        coordinates_text(cell.coordinates, [axis for axis in cell.coordinates if axis in axes])
-        for cell in cells
-    ]
+    for cell in cells:
+        coordinates = cell.coordinates
+        yield coordinates_text(coordinates, [axis for axis in coordinates if axis in axes])
 
 
 def _node(name: str, place: str) -> str:
@@ -188,7 +187,12 @@ def beyond_the_end(spec: MeasureSpec, cell: Cell) -> str:
 def _path(cells: Sequence[Cell]) -> str:
     if not cells:
         return ""
-    return str(cells[0].path if len(cells) == 1 else cells[0].path.parent)
+    return _text(cells[0].path if len(cells) == 1 else cells[0].path.parent)
+
+
+@lru_cache(maxsize=1)  # the checks of a cell follow each other, and have one text of its log
+def _text(path: Path) -> str:
+    return str(path)
 
 
 def _verdict(name: str, claim: Claim, outcome: Outcome, measure: str) -> Verdict:

@@ -243,8 +243,9 @@ def _measured(job: CellJob, simulated: Simulated) -> EndedCell:
 
 def _cells_of(job: CellJob, outcome: CellOutcome, trace: Trace) -> list[RunCell]:
     """Return the cells of the sweep that a log is of."""
+    place = job.path.parent, job.path.name
     return [
-        RunCell(index, label, coordinates, job.path, outcome.status, job.config, [trace])
+        RunCell(index, label, coordinates, *place, outcome.status, job.config, [trace])
         for index, label, coordinates in job.cells
     ]
 

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 from lavendersim.errors import ConfigError, Defect
 from lavendersim.experiment import Experiment
 from lavendersim.experiment.cell import Cell, alike
+from lavendersim.scene.numbers_read import NumbersRead
 from lavendersim.scene.plan import CellName, Plan, name_of, plan_of_cell, union
-from lavendersim.scene.starts_read import StartsRead
 
 
 class Decided(NamedTuple):
@@ -30,7 +30,8 @@ class Decided(NamedTuple):
 def shared_plans(cells: Iterable[Cell]) -> list[Plan]:
     """Return the plan of each cell; equal choices give one and the same object.
 
-    Cells that differ in how bodies start alone are planned once where no decision reads that.
+    Cells that differ in how bodies start alone, or how heavy they are, are planned once where no
+    decision reads that.
     Raises ConfigError with every key of the file's `effects` that cannot be, in any cell.
     """
     return joined([decided(cells)])
@@ -88,23 +89,27 @@ def _decisions(plan: Plan) -> Hashable:
 
 
 def _plans_of_class(
-    cells: list[Cell], defects: dict[Defect, None]
+    cells: list[Cell], defects: dict[Defect, None], masses: bool = True
 ) -> Iterator[tuple[Plan, list[Cell]]]:
-    """Yield the plan of cells that differ in how bodies start alone; where it matters, of each.
+    """Yield the plan of cells that differ in numbers of bodies alone; where it matters, of each.
 
-    defects: notes those of cells that have no plan.
+    defects: notes those of cells that have no plan. masses: they may differ in these.
     """
-    starts = StartsRead()
+    read = NumbersRead()
     for number, cell in enumerate(cells):
         try:
-            plan = plan_of_cell(cell, starts=None if number or len(cells) == 1 else starts)
+            plan = plan_of_cell(cell, read=None if number or len(cells) == 1 else read)
         except ConfigError as error:
             defects |= dict.fromkeys(error.defects)
-            if starts.any is False:
+            if read.none:
                 return  # the others are refused alike
             continue
-        if starts.any is False:
+        if read.none:
             yield plan.of(tuple(map(name_of, cells))), cells
+            return
+        if read.masses and not read.starts and masses:
+            for one in alike(cells, masses=False):
+                yield from _plans_of_class(one, defects, masses=False)
             return
         yield plan, [cell]
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, overload
 
-from lavendersim.durable_files import write_whole
+from lavendersim.durable_files import write_in_pieces
 
 from .accuracy import PARTS, Accuracy
 from .limits_reached import limits_in_words
@@ -26,31 +27,50 @@ _WORST = [name for part in PARTS for name in (f"worst_{part}", f"worst_{part}_co
 VIOLATIONS = tuple(name for name in _WORST if name not in ACCURACY)
 
 
+class _Rows(Sequence[CellResult]):
+    """What a run says of its cells; a row is made when it is asked for, and not kept."""
+
+    def __init__(self, finished: Finished, measured: Sequence[dict[str, Any]]) -> None:
+        self._cells, self._outcomes = finished.run.cells, finished.outcomes
+        self._measured = measured
+
+    def __len__(self) -> int:
+        return len(self._cells)
+
+    @overload
+    def __getitem__(self, place: int) -> CellResult: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> list[CellResult]: ...
+
+    def __getitem__(self, place: int | slice) -> CellResult | list[CellResult]:
+        if isinstance(place, slice):
+            return [self[one] for one in range(*place.indices(len(self)))]
+        cell, outcome = self._cells[place], self._outcomes[place]
+        steps = max(outcome.steps, 1)
+        return CellResult(
+            cell.index,
+            cell.label,
+            outcome.status,
+            outcome.steps,
+            self._measured[place],
+            outcome.physics_ns / steps / 1000,
+            outcome.logging_ns / steps / 1000,
+            outcome.compile_ns / 1e9,
+            outcome.accuracy.tolerance,
+            outcome.accuracy.worst_residual,
+            outcome.accuracy.not_converged,
+            _violations(outcome.accuracy),
+            outcome.accuracy.at_limit,
+        )
+
+
 def write_results(
     finished: Finished, measured: list[dict[str, Any]], overheads: OverheadTable | None = None
 ) -> None:
     """Write the tables of a finished run; numbers keep all their digits."""
     run = finished.run
-    rows: list[CellResult] = []
-    for cell, outcome, values in zip(run.cells, finished.outcomes, measured, strict=True):
-        steps = max(outcome.steps, 1)
-        rows.append(
-            CellResult(
-                cell.index,
-                cell.label,
-                outcome.status,
-                outcome.steps,
-                values,
-                outcome.physics_ns / steps / 1000,
-                outcome.logging_ns / steps / 1000,
-                outcome.compile_ns / 1e9,
-                outcome.accuracy.tolerance,
-                outcome.accuracy.worst_residual,
-                outcome.accuracy.not_converged,
-                _violations(outcome.accuracy),
-                outcome.accuracy.at_limit,
-            )
-        )
+    rows = _Rows(finished, measured)
     results = RunResults(
         run.name,
         run.experiment.options.reduced,
@@ -62,7 +82,7 @@ def write_results(
         None if overheads is None else overheads.as_data(),
     )
     results.write(run.path / RESULTS)
-    _write_csv(run, rows)
+    write_in_pieces(run.path / TABLE, _lines_of(run, rows), flush=False)
 
 
 def _violations(accuracy: Accuracy) -> dict[str, Any]:
@@ -107,17 +127,20 @@ def convergence_notices(finished: Finished) -> list[str]:
     return notices
 
 
-def _write_csv(run: Run, rows: list[CellResult]) -> None:
+def _lines_of(run: Run, rows: Sequence[CellResult]) -> Iterator[str]:
     names, axes = list(run.experiment.measures), list(run.experiment.axes)
-    text = io.StringIO()
-    writer = csv.writer(text)
-    writer.writerow(["cell", *axes, "status", "steps", *names, *COSTS, *ACCURACY, *VIOLATIONS])
+    yield _line(["cell", *axes, "status", "steps", *names, *COSTS, *ACCURACY, *VIOLATIONS])
     for cell, row in zip(run.cells, rows, strict=True):
         coordinates = [str(cell.coordinates.get(axis, "")) for axis in axes]
         values = [row.measures.get(name, "") for name in names]
-        writer.writerow(
+        yield _line(
             [cell.label, *coordinates, row.status, row.steps, *values]
             + [getattr(row, name) for name in (*COSTS, *ACCURACY)]
             + [row.violations[name] for name in VIOLATIONS]
         )
-    write_whole(run.path / TABLE, text.getvalue(), flush=False)
+
+
+def _line(values: Sequence[Any]) -> str:
+    text = io.StringIO()
+    csv.writer(text).writerow(values)
+    return text.getvalue()

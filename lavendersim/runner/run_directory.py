@@ -40,20 +40,26 @@ RUNS = Path("runs")
 RESUME = "lavender run CONFIG --resume"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class RunCell:
     """One cell that was run, and its log."""
 
     index: int
     label: str
     coordinates: Mapping[str, Any]
-    path: Path
+    _folder: Path  # of many cells one: a path of its own takes half of what a cell does
+    _file: str  # its log, from there
     status: str
     _config: CellConfig | None = field(default=None, repr=False, compare=False)  # where it was run
     _open: list[Trace] = field(default_factory=list, repr=False, compare=False)
     _damage: list[str] = field(default_factory=list, repr=False, compare=False)  # once looked for
     allow_incomplete: bool = False  # read what is whole of a damaged log
     expected: ExpectedLog | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def path(self) -> Path:
+        """Its log."""
+        return self._folder / self._file
 
     def trace(self) -> Trace:
         """Open the cell's log; its columns are read when they are first asked for.
@@ -174,7 +180,8 @@ class Run:
                 row.index,
                 row.label,
                 known[row.index].coordinates if known else swept_values(row.coordinates),
-                self.path / row.file,
+                self.path,
+                row.file,
                 row.status,
                 known[row.index].config if self.ran is not None else None,
                 allow_incomplete=self.allow_incomplete,

@@ -16,8 +16,8 @@ from lavendersim.errors import ConfigError, UsageError
 from lavendersim.experiment.cell import Cell
 
 from .facts import facts_of
+from .numbers_read import NumbersRead
 from .overrides import Forced, OverrideError, override
-from .starts_read import StartsRead
 
 # What cells of one engine agree in. Numerics that choose between laws: no coefficient turns one
 # engine into another's; what the section `study` asks for is one more. Effects switched by hand: a
@@ -122,16 +122,16 @@ def plan_of(
     config: CellConfig,
     record: bool = True,
     cell: CellName = ALONE,
-    starts: StartsRead | None = None,
+    read: NumbersRead | None = None,
 ) -> Plan:
     """Derive the plan of one cell from its config alone.
 
-    record: its steps are to be logged. starts: notes whether it depends on how bodies start.
+    record: its steps are to be logged. read: notes which numbers of bodies it depends on.
     Raises OverrideError where its `effects` cannot be.
     """
     facts = facts_of(config, record)
-    if starts is not None:
-        facts = starts.watched(facts)
+    if read is not None:
+        facts = read.watched(facts)
     derived = {effect.name: effect.decide(facts) for effect in EFFECTS}
     touching = _shape_pairs(facts)
     made = override(derived, touching, facts, config.effects)
@@ -158,10 +158,10 @@ def plan_of(
     )
 
 
-def plan_of_cell(cell: Cell, record: bool = True, starts: StartsRead | None = None) -> Plan:
+def plan_of_cell(cell: Cell, record: bool = True, read: NumbersRead | None = None) -> Plan:
     """Derive the plan of a cell; raises ConfigError at the keys of its `effects` that cannot be."""
     try:
-        return plan_of(cell.config, record, name_of(cell), starts)
+        return plan_of(cell.config, record, name_of(cell), read)
     except OverrideError as error:
         defects = [cell.defect(("effects", one.name), one.sentence) for one in error.refusals]
         raise ConfigError(sorted(defects)) from None  # in the order of the file

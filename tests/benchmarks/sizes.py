@@ -11,8 +11,10 @@ above its bar, which holds for a share of 1 alone.
 |---|---|
 | plan of 100,000 bodies: a heap of spheres that touch | 5 s |
 | plan of 100,000 cells: drops by restitution and clearance | 10 s, 300 MB |
+| plan of 100,000 cells: drops by mass and restitution, with measures and a claim | 10 s, 300 MB |
 | first step of 20,000 bodies, logged and judged | 30 s, 600 MB |
 | 2,000,000 steps of one ball judged again, from the log | memory as for a tenth of them |
+| 1,000 and 5,000 short drops run, measured and judged | 12 kB a cell more |
 """
 
 from __future__ import annotations
@@ -26,6 +28,9 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 from typing import Final, NamedTuple
+
+from tests.benchmarks.line_cases import RESTITUTIONS, lasting
+from tests.benchmarks.line_cases import drops as line_drops
 
 
 class Case(NamedTuple):
@@ -64,6 +69,9 @@ sweep:
   h: {{path: scene.bodies.ball.release.clearance, values: {clearances}}}
 always: {{}}
 """
+# Of which a cell more is asked for what it takes; 24 steps each.
+FEW, MANY = 1000, 5000
+MOST_OF_CELL: Final = 12.0  # [kB]
 BALL: Final = """scene:
   bodies:
     floor: {{shape: {{kind: plane}}}}
@@ -72,6 +80,11 @@ numerics: {{timestep: 1/1000}}
 duration: {duration}
 always: {{}}
 """
+
+
+def short_drops(cells: int) -> str:
+    """Return the config of so many drops that rebound within 0.1 s."""
+    return lasting(line_drops(cells), "0.1").replace("clearance: 1.0", "clearance: 0.01")
 
 
 def cases(share: float) -> list[Case]:
@@ -84,12 +97,20 @@ def cases(share: float) -> list[Case]:
         clearances=[round(0.5 + k / 1000, 4) for k in range(along)],
     )
     judged = (("run",), ("judge", "latest"))
+    heavy = line_drops(max(round(5000 * share), 1) * RESTITUTIONS)
+    few, many = (
+        short_drops(max(round(cells * share / RESTITUTIONS), 1) * RESTITUTIONS)
+        for cells in (FEW, MANY)
+    )
     return [
         Case("plan of 100,000 bodies", deep, (("plan",),), seconds=5.0),
         Case("plan of 100,000 cells", drops, (("plan",),), seconds=10.0, megabytes=300.0),
+        Case("plan of 100,000 masses", heavy, (("plan",),), seconds=10.0, megabytes=300.0),
         Case("first step of 20,000 bodies", heap, (("run",),), seconds=30.0, megabytes=600.0),
         Case("200,000 steps judged", BALL.format(duration=200 * share), judged),
         Case("2,000,000 steps judged", BALL.format(duration=2000 * share), judged),
+        Case(f"{FEW:,} drops", few, (("run",),)),
+        Case(f"{MANY:,} drops", many, (("run",),)),
     ]
 
 
@@ -155,6 +176,11 @@ def main() -> None:
     few, many = (table[name] for name in ("200,000 steps judged", "2,000,000 steps judged"))
     flat = median(one for _, one in many) / median(one for _, one in few)
     print(f"memory of ten times the steps: {flat:.2f} times")
+    few, many = (median(one for _, one in table[f"{name:,} drops"]) for name in (FEW, MANY))
+    cell = (many - few) * 1000.0 / ((MANY - FEW) * options.share)
+    print(f"memory of a cell more: {cell:.1f} kB")
+    if cell > MOST_OF_CELL:
+        above.append(f"a cell more: {cell:.1f} kB, at most {MOST_OF_CELL:g}")
     if options.output:
         options.output.write_text(json.dumps({"share": options.share, "samples": table}, indent=1))
     if options.check and above:

@@ -1,9 +1,11 @@
-"""Bits, cuts and exchanged chunks at random in logs of finished runs, under every verb.
+"""Bits, cuts and exchanged chunks at random in logs, under every verb, the interface and pytest.
 
     python -m tests.cli.random_damage --flips 1000 --cuts 200 --exchanges 50
 
 Of each damaged log nothing may be drawn, shown or read with another number: a verb exits 3, or
 prints what it prints of the whole one. What `recover` saves has the numbers of the whole log.
+pytest runs a config itself: there a log is damaged when it is closed, before it is judged, and each
+item passes with the number of the whole log, or fails and names the damaged one.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ import argparse
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,6 +23,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 
 from damaged_runs import DRAWN, Done, logs, made, verb
+from judged_by_pytest import Judged, judged_by_pytest
 
 from lavendersim.errors import TraceError
 from lavendersim.trace import open_trace
@@ -54,6 +57,7 @@ KINDS = {
 }
 TABLES = ("step", "recorded_contact", "residual")
 ALLOWED_EVERY = 25  # of so many damaged logs one is drawn with --allow-incomplete, which takes time
+READERS = ("verbs", "pytest")
 
 
 class Damage(NamedTuple):
@@ -207,18 +211,53 @@ def _recovered(damage: Damage, truth: Truth, out: Path, whole: bytes) -> str:
     return f"recover: {('whole', '', '', 'part', '', 'nothing')[done.code]}"
 
 
+def check_judged(run: Path, damage: Damage, out: Path, healthy: Judged, read: bool) -> list[str]:
+    """Judge by pytest with one log damaged; a number is that of the whole log, or none and fails.
+
+    read: the logs are judged from their files.
+    """
+    name, config = damage.log.name, run.parents[1] / "drop.yaml"
+    if damage.data == healthy.logs[name]:
+        return []
+    found = judged_by_pytest(config, out / "pytest", {name: damage.data}, read)
+    assert found.logs == healthy.logs
+    assert found.items.keys() == healthy.items.keys()
+    changed = [one for node, one in found.items.items() if one != healthy.items[node]]
+    for outcome, text in changed:
+        assert outcome == "failed"
+        assert name in text
+        assert "Traceback" not in text
+    for node, number in found.numbers.items():
+        if number != healthy.numbers[node]:
+            assert (number, found.items[node] in changed) == ("nan", True), (node, number)
+    if changed or damage.what == "cut":
+        assert found.code == 1
+        assert changed
+    return [f"pytest: {1 if changed else 'same'}" + ("" if read else " in memory")]
+
+
 def counted(
-    kind: str, folder: Path, flips: int, cuts: int, exchanges: int, seed: int = 0
+    kind: str,
+    folder: Path,
+    flips: int,
+    cuts: int,
+    exchanges: int,
+    seed: int = 0,
+    readers: Sequence[str] = READERS,
 ) -> dict[str, Counter[str]]:
-    """Return, by what was done to a log, how many verbs made what of it."""
+    """Return, by what was done to a log, how many readers made what of it."""
     folder.mkdir()
     run, out = made(KINDS[kind], folder), folder / "out"
     out.mkdir()
     truth = truth_of(run)
+    healthy = judged_by_pytest(folder / "drop.yaml", out / "pytest", {})
+    assert healthy.logs == {log.name: log.read_bytes() for log in logs(run)}
     counts: dict[str, Counter[str]] = {}
     for number, damage in enumerate(damages(run, flips, cuts, exchanges, seed)):
-        allowed = number % ALLOWED_EVERY == 0
-        found = check(run, damage, truth, out, allowed)
+        seldom = number % ALLOWED_EVERY == 0
+        found = check(run, damage, truth, out, seldom) if "verbs" in readers else []
+        if "pytest" in readers:
+            found += check_judged(run, damage, out, healthy, read=not seldom)
         counts.setdefault(damage.what, Counter()).update(found)
     return counts
 
@@ -229,12 +268,12 @@ def main() -> None:
     for name, count in (("--flips", 1000), ("--cuts", 200), ("--exchanges", 50), ("--seed", 0)):
         parser.add_argument(name, type=int, default=count)
     parser.add_argument("--kinds", nargs="+", choices=list(KINDS), default=list(KINDS))
+    parser.add_argument("--readers", nargs="+", choices=READERS, default=READERS)
     asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         for kind in asked.kinds:
-            counts = counted(
-                kind, Path(folder) / kind, asked.flips, asked.cuts, asked.exchanges, asked.seed
-            )
+            how = asked.flips, asked.cuts, asked.exchanges, asked.seed, asked.readers
+            counts = counted(kind, Path(folder) / kind, *how)
             for what, found in counts.items():
                 print(
                     f"{kind:16} {what:9}",

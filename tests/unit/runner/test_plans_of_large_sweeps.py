@@ -1,4 +1,4 @@
-"""A sweep is planned by classes of cells that differ in how bodies start alone.
+"""A sweep is planned by classes of cells that differ in numbers of bodies alone.
 
 What comes out is what planning each cell by itself gives. Cells are built by classes and not one
 by one, and a value that cannot be is found in the last cell as in the first. What that takes,
@@ -17,10 +17,11 @@ from lavendersim.experiment import Experiment, load_experiment_text
 from lavendersim.experiment import cell as cells_module
 from lavendersim.experiment import load as loading
 from lavendersim.experiment.cell import alike
+from lavendersim.runner import plans as planning
 from lavendersim.runner.plans import distinct, shared_plans
 from lavendersim.scene.facts import facts_of
+from lavendersim.scene.numbers_read import MASSES, STARTS
 from lavendersim.scene.plan import plan_of_cell, union
-from lavendersim.scene.starts_read import STARTS
 
 DROPS = """scene:
   gravity: {gravity}
@@ -62,6 +63,11 @@ OWN = """  s:
 MIXED = (
     "  s: {paths: [scene.bodies.ball.release.clearance, scene.bodies.ball.mass], values: [1, 2]}"
 )
+M = "  m: {path: scene.bodies.ball.mass, values: %s}"
+HEAVY = "  m: {path: scene.bodies.ball.mass, values: [0.5, 1, 2, 1e9]}"
+BRIGHT = (
+    "  s: {paths: [scene.bodies.ball.mass, scene.bodies.ball.surface.friction], values: [1, 2]}"
+)
 SPEED = "  v: {path: scene.bodies.ball.velocity, values: [[0, 0, 0], [1, 0, 0], [0, 2, 0]]}"
 Z = "  z: {path: scene.bodies.high.position.2, values: [0.1, 0.12, 4, 50]}"
 MASS = "  m: {path: scene.bodies.high.mass, values: [1, 2]}"
@@ -84,7 +90,9 @@ def classes(experiment: Experiment) -> int:
         ((E, SPEED), 3),
         ((E, TOGETHER), 3),
         ((E, OWN), 6),
-        ((E, MIXED), 6),
+        ((E, MIXED), 3),
+        ((E, HEAVY), 3),
+        ((E, BRIGHT), 6),
     ],
     ids=[
         "starts inside",
@@ -93,7 +101,9 @@ def classes(experiment: Experiment) -> int:
         "speeds",
         "starts moved together",
         "starts and phases by formulas",
-        "starts moved with what is none",
+        "starts moved with masses",
+        "masses",
+        "masses moved with a friction",
     ],
 )
 def test_a_class_is_planned_as_each_of_its_cells_is(axes: tuple[str, ...], expected: int) -> None:
@@ -109,15 +119,40 @@ def test_cells_whose_heights_decide_are_planned_one_by_one(axes: tuple[str, ...]
     cells = load_experiment_text(text, "pair.yaml").cells()
     own = [plan_of_cell(cell) for cell in cells]
     on = [plan.decisions["fast_bodies"].on for plan in own]
-    assert len(alike(cells)) == 2
+    assert len(alike(cells)) == 1
     assert len(set(on)) == 2  # 0.1 m is no fall, 50 m is one: the claim would be empty otherwise
     (plan,) = distinct(shared_plans(cells))
     assert plan == union(own)
     assert len(plan.required_by["fast_bodies"]) == sum(on)
 
 
-@pytest.mark.parametrize("axis", [H % "[1, 2]", PHASE, SPEED, TOGETHER, OWN])
-def test_facts_that_differ_between_starts_are_those_that_are_watched(axis: str) -> None:
+def test_where_masses_alone_decide_starts_are_planned_together(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """No effect asks for a mass without asking for heights: one that does is put in their place."""
+    cells = drops(HEAVY, H % "[1, 2, 3]").cells()
+    (before,) = distinct(shared_plans(cells))
+    asked: list[float] = []
+    decide = planning.plan_of_cell
+
+    def heavy(cell: Any, read: Any = None) -> Any:
+        plan = decide(cell, read=read)
+        mass = cell.config.scene.bodies["ball"].mass
+        asked.append(mass)
+        if read is not None:
+            read.masses = True
+        reasons = {name: one._replace(reason=f"{mass:g}") for name, one in plan.decisions.items()}
+        return plan._replace(decisions=reasons)
+
+    monkeypatch.setattr(planning, "plan_of_cell", heavy)
+    (plan,) = distinct(shared_plans(cells))
+    assert asked[1:] == [0.5] * 3 + [1.0] * 3 + [2.0] * 3 + [1e9] * 3
+    assert plan.cells == before.cells
+    assert plan.reasons_of("drag")["2"] == tuple(name for name in plan.cells if "m=2" in name.label)
+
+
+@pytest.mark.parametrize("axis", [H % "[1, 2]", PHASE, SPEED, TOGETHER, OWN, HEAVY, MIXED])
+def test_facts_that_differ_in_numbers_of_bodies_are_those_that_are_watched(axis: str) -> None:
     first, *_, last = (facts_of(cell.config) for cell in drops(axis).cells())
     apart = {
         name
@@ -125,7 +160,8 @@ def test_facts_that_differ_between_starts_are_those_that_are_watched(axis: str) 
         for name, value in one._asdict().items()
         if name != "config" and value != getattr(other, name)
     }
-    assert apart <= STARTS
+    watched = STARTS | MASSES
+    assert apart <= watched
     within = {
         name
         for one, other in zip(first.bodies, last.bodies, strict=True)
@@ -133,26 +169,29 @@ def test_facts_that_differ_between_starts_are_those_that_are_watched(axis: str) 
         if value != getattr(other.config, name)
     }
     assert within
-    assert within <= STARTS
+    assert within <= watched
     others = {name for name, value in first._asdict().items() if value != getattr(last, name)}
     assert others <= {"bodies", "scene"}
     scenes = {name for name, value in first.scene if value != getattr(last.scene, name)}
     assert scenes == {"bodies"}
 
 
-def many(count: int, last: str) -> str:
-    """Return the axis of so many clearances, whose last one is as it is given."""
+def many(count: int, last: str, axis: str = H) -> str:
+    """Return the axis of so many clearances, or others, whose last one is as it is given."""
     values = [f"{1 + k / 1000:g}" for k in range(count - 1)] + [last]
-    return H % f"[{', '.join(values)}]"
+    return axis % f"[{', '.join(values)}]"
 
 
+@pytest.mark.parametrize("axis", [H, M])
 @pytest.mark.parametrize("last", ["-1", "1e60", "high", "[1]"])
-def test_a_value_that_cannot_be_is_found_behind_those_whose_cells_are_built(last: str) -> None:
+def test_a_value_that_cannot_be_is_found_behind_those_whose_cells_are_built(
+    last: str, axis: str
+) -> None:
     count = loading.MOST_CELLS_CHECKED + 500
     with pytest.raises(ConfigError) as refused:
-        drops(many(count, last))
+        drops(many(count, last, axis))
     with pytest.raises(ConfigError) as alone:  # the sentence of a sweep that is built whole
-        drops(many(2, last))
+        drops(many(2, last, axis))
     assert [one.message for one in refused.value.defects] == [
         one.message for one in alone.value.defects
     ]

@@ -1,4 +1,4 @@
-"""Axes that vary nothing but how bodies start, and cells that differ in that alone."""
+"""Axes that vary nothing but numbers of bodies, and cells that differ in these alone."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 
 from lavendersim.experiment import load_experiment_text
 from lavendersim.experiment.cell import alike
-from lavendersim.experiment.sweeps.starts import _is_of_start
+from lavendersim.experiment.sweeps.numbers_of_bodies import _is_of_mass, _is_of_start
 
 BALL = ("scene", "bodies", "ball")
 
@@ -29,6 +29,20 @@ def test_paths_that_say_how_a_body_starts(path: tuple[str | int, ...], start: bo
     assert _is_of_start(path) is start
 
 
+@pytest.mark.parametrize(
+    ("path", "mass"),
+    [
+        ((*BALL, "mass"), True),
+        ((*BALL, "density"), True),
+        ((*BALL, "inertia"), False),  # what is uneven has another plan
+        ((*BALL, "surface", "mass"), False),
+        (("scene", "mass"), False),
+    ],
+)
+def test_paths_that_say_how_heavy_a_body_is(path: tuple[str | int, ...], mass: bool) -> None:
+    assert _is_of_mass(path) is mass
+
+
 SWEPT = """
 scene:
   bodies:
@@ -41,9 +55,11 @@ sweep:
 """
 
 
-def test_cells_that_start_otherwise_alone_are_alike() -> None:
+def test_cells_that_start_otherwise_or_are_heavier_are_alike() -> None:
     cells = load_experiment_text(SWEPT, "a.yaml").cells()
-    classes = [sorted(cell.coordinates["height"] for cell in one) for one in alike(cells)]
+    few = alike(cells, masses=False)
+    classes = [sorted(cell.coordinates["height"] for cell in one) for one in few]
     assert classes == [[1, 2, 3], [1, 2, 3]]
-    masses = [{cell.coordinates["mass"] for cell in one} for one in alike(cells)]
+    masses = [{cell.coordinates["mass"] for cell in one} for one in few]
     assert masses == [{1}, {2}]
+    assert alike(cells) == [list(cells)]
