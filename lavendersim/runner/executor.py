@@ -22,8 +22,8 @@ from .forking import may_fork
 from .progress import Compilation, Progress, Tally
 from .workers import Death, Retried, work
 
-# Cells that would take the processor less [s] than this one after the other are run in this process:
-# each other process imports numba and loads kernels for 1 to 2 s before its first step.
+# Cells that would take the processor less [s] than this one after the other are run in this
+# process: each other one imports numba and loads kernels for 1 to 2 s before its first step.
 WORTH_PROCESSES = 4.0
 # Of it. A process that is forked takes 0.02 to 0.05 s to begin and to end: two save no more than
 # twice that where a core has nothing to do, and where none has they take that longer.

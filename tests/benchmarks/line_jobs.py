@@ -6,7 +6,8 @@
 chapter warm   `lavender run configs/chapter --plot`, kernels on disk
 chapter cold   the same, from an empty cache each time
 drops          1,000 drops of 1 s, the config of `line_cases`
-one cell       configs/scenes/drop.yaml
+few cells      configs/scenes/drop.yaml, 96 brief ones
+one cell       configs/chapter/impact_telemetry.yaml
 
 Every command is a process of its own. Of a pair each comes first in turn, so that what drifts meets
 both alike. A ratio is of the two of one pair; their median counts. Where other work has the cores,
@@ -55,7 +56,8 @@ CASES = {
     "chapter warm": JobsCase(lambda: [str(CHAPTER), "--plot"]),
     "chapter cold": JobsCase(lambda: [str(CHAPTER), "--plot"], is_cold=True),
     "drops": JobsCase(_drops),
-    "one cell": JobsCase(lambda: [str(SCENES / "drop.yaml")]),
+    "few cells": JobsCase(lambda: [str(SCENES / "drop.yaml")]),
+    "one cell": JobsCase(lambda: [str(CHAPTER / "impact_telemetry.yaml")]),
 }
 
 
@@ -94,7 +96,8 @@ def case_data(pairs: Sequence[Pair]) -> dict[str, Any]:
     """Return what became of a case: medians [s], ratios of several to one, and every pair."""
     found: dict[str, Any] = {}
     for kind in Cost._fields:
-        ones, severals = ([getattr(one, kind) for one in each] for each in zip(*_costs(pairs)))
+        ones = [getattr(pair.one, kind) for pair in pairs]
+        severals = [getattr(pair.several, kind) for pair in pairs]
         ratios = [several / one for one, several in zip(ones, severals, strict=True)]
         found[kind] = {"one": median(ones), "several": median(severals), "ratio": median(ratios)}
     found["load"] = median(pair.load for pair in pairs)
@@ -103,10 +106,6 @@ def case_data(pairs: Sequence[Pair]) -> dict[str, Any]:
         for pair in pairs
     ]
     return found
-
-
-def _costs(pairs: Sequence[Pair]) -> list[tuple[Cost, Cost]]:
-    return [(pair.one, pair.several) for pair in pairs]
 
 
 def slower(found: dict[str, Any]) -> list[str]:
