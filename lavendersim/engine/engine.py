@@ -272,10 +272,11 @@ class Engine:
             _codes[self.kind] = compiled[0].library.get_pointer_to_function(symbol)
         return status
 
-    def take_rows(self) -> Rows:
+    def take_rows(self, room: bool = False) -> Rows:
         """Return the rows written since the last call, for the caller to keep, and empty the log.
 
-        Behind each row of a step or a contact is room for its time, with any content.
+        Behind each row of a step or a contact is room for its time, with any content. room: steps
+        and poses have a row of zeros in front of the first, for the state before them.
         """
         count, log = self.counters[0], self.log
         contact = log.contact[: count["contact_rows"]]
@@ -284,9 +285,10 @@ class Engine:
         else:
             contact = copied(contact)
         history = log.residual[: count["residual_rows"]]
+        step, pose = log.step[: count["step_rows"]], log.pose[: count["step_rows"]]
         rows = Rows(
-            copied(log.step[: count["step_rows"]]),
-            log.pose[: count["step_rows"]].copy(),
+            copied(step, room),
+            copied(pose, room),
             contact,
             history[history["step"] <= count["step"]],  # of steps that are done
         )

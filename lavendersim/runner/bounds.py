@@ -52,19 +52,25 @@ class Bounds:
         self._last: tuple[Rows, Floats] | None = None  # the state before the block's
 
     @without_warnings
-    def within(self, block: Block, diverged: bool = False) -> tuple[Block, str]:
+    def within(self, block: Block, diverged: bool = False, room: bool = False) -> tuple[Block, str]:
         """Return the block up to the first step beyond a bound, and a sentence if there is one.
 
         diverged: the engine ended with the last state of the block, which then counts for nothing.
+        room: steps and poses have a row in front that is none of the block's: the state before is
+        put there, where without it both would be copied.
         """
+        with_room, block = block, _without_room(block) if room else block
         if self._checks is None or self.worst is None or len(block.step) == 0:
             return block, ""
         step, pose = block.step, block.pose
         again = 0
         if self._last is not None:
             again = 1
-            step = joined([self._last[0], step])
-            pose = np.concatenate([self._last[1], pose])
+            if room:
+                step, pose = with_room.step, with_room.pose
+                step[:1], pose[:1] = self._last
+            else:
+                step, pose = joined([self._last[0], step]), np.concatenate([self._last[1], pose])
         part = Section(
             step, block.contact, pose[:, :, :POSE], *self._cell, happened=self._happened(step)
         )
@@ -108,6 +114,10 @@ def _by_kernels(sums: RunningSums, touches: bool) -> Passes:
     return Passes(
         *(summed, kernels.not_finite, kernels.fastest, kernels.imbalance, kernels.created)
     )
+
+
+def _without_room(block: Block) -> Block:
+    return block._replace(step=block.step[1:], pose=block.pose[1:])
 
 
 def _cut(block: Block, states: int) -> Block:

@@ -371,11 +371,12 @@ def _simulation(
             status = divergence(scene, engine)
         yield None
         start = perf_counter_ns()
-        rows = engine.take_rows()
-        if len(rows.step):
-            block, broken = bounds.within(block_of(rows, scene.clock), result == DIVERGED)
+        rows = engine.take_rows(room=True)
+        if (taken := len(rows.step) - 1) > 0:
+            block = block_of(rows, scene.clock)
+            block, broken = bounds.within(block, result == DIVERGED, room=True)
             if broken:
-                spent = spent * len(block.step) // len(rows.step)
+                spent = spent * len(block.step) // taken
                 last = int(block.step["step"][-1])
                 if last < done or result != DIVERGED:
                     result, status, done = STOPPED, broken, last

@@ -22,10 +22,12 @@ from .forking import may_fork
 from .progress import Compilation, Progress, Tally
 from .workers import Death, Retried, work
 
-# Cells that would take less [s] than this one after the other are run in this process: each other
-# process imports numba and loads kernels for 1 to 2 s of processor time before its first step.
+# Cells that would take the processor less [s] than this one after the other are run in this
+# process: each other one imports numba and loads kernels for 1 to 2 s before its first step.
 WORTH_PROCESSES = 4.0
-FORKED: Final = 0.05  # of it: a process that is forked takes 0.02 to 0.05 s to begin and to end
+# Of it. A process that is forked takes 0.02 to 0.05 s to begin and to end: two save no more than
+# twice that where a core has nothing to do, and where none has they take that longer.
+FORKED: Final = 0.125
 # Cells are short whose steps and bodies make no more than this, where the one before them took no
 # more than BRIEF [s] of the processor. They are run together, so many at once: what a signal waits
 # for, and what a kill takes, is less than a second of work.
@@ -53,7 +55,7 @@ def outcomes_of(
     apart = _compile_together(missing, workers, progress)
     # The first cell of each plan runs here: it leaves the kernel where other processes find it.
     ordered = sorted(jobs, key=lambda job: first.get(job.plan.choices) is not job)
-    # Cells that are done, what they took, and of the processor each of the last ones [s].
+    # Cells that are done, what those took that were no first ones, and each of the last ones [s].
     done, taken, latest = 0, 0.0, inf
     worth = WORTH_PROCESSES * (FORKED if may_fork() else 1.0)
     while done < len(ordered):
@@ -62,8 +64,8 @@ def outcomes_of(
         # The first cell of a plan loads what all others have: another tells whether they are brief,
         # where they may be enough for batches.
         is_known = done > len(first) or not _is_short(job) or left - 1 < 2 * BATCHES * workers
-        worth_it = workers > 1 and done and taken / done * left > worth
-        if worth_it and done >= len(first) and is_known:
+        each = taken / (done - len(first)) if done > len(first) else latest
+        if workers > 1 and done and done >= len(first) and is_known and each * left > worth:
             break
         most = TOGETHER if done > len(first) and latest <= BRIEF else 1
         batch = next(_batches(ordered[done : done + most], most))
@@ -71,11 +73,12 @@ def outcomes_of(
         begun = missing.get(job.plan.spec) if done < len(first) else None
         if begun is not None and is_compiled(job.plan.spec):  # by a cell before, or beside
             begun = None
-        begin, begin_here = perf_counter(), process_time()
+        clock = _clock_of(job)
+        begin = clock()
         ended = run_and_measure(batch, _beginning(job, begun, tally, progress))
-        compiled = sum(one.outcome.compile_ns for one in ended) / 1e9
-        taken += perf_counter() - begin - compiled
-        latest = (process_time() - begin_here - compiled) / len(batch)
+        spent = clock() - begin - sum(one.outcome.compile_ns for one in ended) / 1e9
+        latest = spent / len(batch)
+        taken += spent if done >= len(first) else 0.0
         done += len(batch)
         for job, one in zip(batch, ended, strict=True):
             tally.end(job)
@@ -91,6 +94,15 @@ def outcomes_of(
     for job, found in _run_in_others(batches, workers, progress):
         tally.end(job)
         yield job, failed(job, found.how) if isinstance(found, Death) else found
+
+
+def _clock_of(job: CellJob) -> Callable[[], float]:
+    """Return what tells the time that a cell takes [s].
+
+    That of the processor: a busy one is slower, and there is less to gain by other processes. But
+    another engine works in a process of its own, whose time is not counted in this one.
+    """
+    return process_time if job.config.engine is None else perf_counter
 
 
 def _batches(jobs: Sequence[CellJob], most: int) -> Iterator[list[CellJob]]:

@@ -22,8 +22,8 @@ from .interruption import handled
 from .plans import Decided, decided, joined
 from .workers import Death, work
 
-# Cells below which one process plans: another one takes 0.05 s, and a cell half a millisecond.
-WORTH_PROCESSES: Final = 500
+# Cells below which one process plans: another one takes 0.05 s, and a cell a quarter millisecond.
+WORTH_PROCESSES: Final = 2_000
 SHARES: Final = 4  # of each process, so that none waits long for the other
 MOST_OF_SHARE: Final = 2_000  # cells: what comes back of them is in memory twice
 

@@ -27,6 +27,7 @@ class MessageForm(NamedTuple):
     """A layout and where its numbers come from; see `engine.message_kernel`."""
 
     template: Bytes
+    text: Words  # the template, as many words of it as are whole
     slots: Words
     head_slots: Words
     odd_slots: Words
@@ -43,7 +44,7 @@ class MessageForm(NamedTuple):
             fill_messages()(
                 data,
                 starts.astype(np.uint64),
-                (self.template, self.slots, self.head_slots, self.odd_slots),
+                (self.template, self.text, self.slots, self.head_slots, self.odd_slots),
                 words,
                 heads,
             )
@@ -71,7 +72,8 @@ def message_form(
             else:
                 odd_slots.append((offset, column, size, size == VARINT_WIDTH))
     data = np.frombuffer(template.data, np.uint8).copy()
-    return MessageForm(data, _table(slots, 2), _table(head_slots, 2), _table(odd_slots, 4))
+    text = np.frombuffer(template.data, "<u8", len(data) // WORD).astype(np.uint64)
+    return MessageForm(data, text, _table(slots, 2), _table(head_slots, 2), _table(odd_slots, 4))
 
 
 def _table(rows: Sequence[Sequence[int]], width: int) -> Words:

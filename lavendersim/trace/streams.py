@@ -307,7 +307,8 @@ class ContactColumns:
         poses = [pose for one in known for pose in (one.before[None], one.following)]
         positions = [pose[:, :, :3] for pose in poses]
         rows = np.arange(len(counts)).repeat(counts)
-        return Starts(self._bodies, np.concatenate(positions).astype(np.float64), rows)
+        known_at = np.concatenate(positions).astype(np.float64, copy=False)
+        return Starts(self._bodies, known_at, rows)
 
 
 def _touched(counted: Counted, first: int, last: int) -> Touched:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
@@ -40,11 +41,21 @@ def arguments(command: str, runs: Path, listed: Path) -> list[str]:
 
 def cost(command: str, runs: Path, listed: Path) -> Cost:
     """Run a command to its end."""
+    return cost_of(arguments(command, runs, listed), {})
+
+
+def cost_of(verb: Sequence[str], variables: Mapping[str, str]) -> Cost:
+    """Run `lavender` to its end, all processes that it starts counted; verb: with its arguments.
+
+    variables: of the environment, besides those of this process.
+    """
     # As where lavender is installed: a start reads bytecode from the disk.
     kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-    whole = [sys.executable, "-m", "lavender_cli.main", *arguments(command, runs, listed)]
+    whole = [sys.executable, "-m", "lavender_cli.main", *verb]
     before, begin = os.times(), perf_counter()
-    done = subprocess.run(whole, capture_output=True, text=True, check=False, env=kept)
+    done = subprocess.run(
+        whole, capture_output=True, text=True, check=False, env=kept | dict(variables)
+    )
     wall, after = perf_counter() - begin, os.times()
     assert done.returncode == 0, done.stderr
     user = after.children_user - before.children_user

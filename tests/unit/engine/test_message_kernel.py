@@ -17,8 +17,12 @@ def varint(value: int, width: int) -> bytes:
 
 
 def test_slots_hold_their_numbers_and_all_else_is_the_template(rng) -> None:
-    """Two words at 3 and 20, a head at 12, a varint of 3 bytes at 30, two low bytes at 35."""
-    template = rng.integers(0, 256, 40).astype(np.uint8)
+    """Two words at 3 and 20, a head at 12, a varint of 3 bytes at 30, two low bytes at 35.
+
+    The last three bytes make no whole word.
+    """
+    template = rng.integers(0, 256, 43).astype(np.uint8)
+    text = template[:40].view(U)
     words = rng.integers(0, 2**63, (5, 4), dtype=U)
     heads = np.column_stack(
         [rng.integers(0, 2**63, 5, dtype=U), rng.integers(0, 2**21, 5, dtype=U),
@@ -28,7 +32,7 @@ def test_slots_hold_their_numbers_and_all_else_is_the_template(rng) -> None:
     odd_slots = np.array([[30, 1, 3, 1], [35, 2, 2, 0]], U)
     starts = np.array([100, 7, 300, 50, 200], U)
     data = np.full(400, 0xEE, np.uint8)
-    fill_messages()(data, starts, (template, slots, head_slots, odd_slots), words, heads)
+    fill_messages()(data, starts, (template, text, slots, head_slots, odd_slots), words, heads)
     expected = bytearray(b"\xee" * 400)
     for i, start in enumerate(starts.tolist()):
         message = bytearray(template.tobytes())
@@ -37,5 +41,5 @@ def test_slots_hold_their_numbers_and_all_else_is_the_template(rng) -> None:
         message[12:20] = struct.pack("<Q", heads[i, 0])
         message[30:33] = varint(int(heads[i, 1]), 3)
         message[35:37] = struct.pack("<H", heads[i, 2])
-        expected[start : start + 40] = message
+        expected[start : start + 43] = message
     assert data.tobytes() == bytes(expected)

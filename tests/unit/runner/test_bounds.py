@@ -9,6 +9,7 @@ import pytest
 
 from lavendersim.measures import step_passes
 from lavendersim.measures.specs.always import Always
+from lavendersim.record_tables import copied
 from lavendersim.runner import bounds
 from lavendersim.runner.bounds import Bounds
 from lavendersim.trace import Block
@@ -55,15 +56,22 @@ def made(**always: object) -> Bounds:
     return Bounds(spec, list(BODIES), CONFIG, CONFIG.clock, NO_CONTACTS)
 
 
+@pytest.mark.parametrize("room", [False, True])
 @pytest.mark.parametrize("size", [1, 7, 30])
-def test_a_run_ends_with_the_step_that_breaks_its_bound_whatever_the_blocks(size: int) -> None:
+def test_a_run_ends_with_the_step_that_breaks_its_bound_whatever_the_blocks(
+    size: int, room: bool
+) -> None:
+    """Whether the state before is copied in front of a block, or has room there."""
     checked, whole = made(speed=10.0), run()
     for begin in range(0, STEPS, size):
-        part = Block(*(rows[begin : begin + size] for rows in (whole.step,)), whole.contact, whole.pose[begin : begin + size], whole.residual[begin : begin + size])  # noqa: E501  # fmt: skip
-        kept, sentence = checked.within(part)
+        end = begin + size
+        step, pose = copied(whole.step[begin:end], room), copied(whole.pose[begin:end], room)
+        part = Block(step, whole.contact, pose, whole.residual[begin:end])
+        kept, sentence = checked.within(part, room=room)
         if sentence:
             break
-        assert kept is part
+        assert kept.step.tobytes() == whole.step[begin:end].tobytes()
+        assert kept.pose.tobytes() == whole.pose[begin:end].tobytes()
     assert kept.step["step"][-1] == kept.residual["step"][-1] == 10
     assert len(kept.pose) == len(kept.step)
     assert sentence == ("beyond bounds: speed 10.5 m/s, at most 10, ball, in step 10 (t = 0.1 s)")

@@ -132,3 +132,21 @@ def test_a_cold_first_cell_does_not_keep_the_others_from_batches(
     left = jobs[:-1]
     assert len([*executor.outcomes_of(left, 2, Progress())]) == count - 1
     assert given == [1] * (count - 2)  # too few for batches: no cell is run here to find out
+
+
+def test_a_cold_first_cell_starts_no_processes_for_brief_ones(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It took a second; the 40 others take 0.04 s together, less than to start a process."""
+    spent: list[float] = [0.0]
+
+    def run_here(batch: list[CellJob], began: Any) -> list[Any]:
+        spent.append(spent[-1] + (1.0 if len(spent) == 1 else 0.001 * len(batch)))
+        return [failed(job, "died") for job in batch]
+
+    jobs = jobs_of(tmp_path, [round(0.1 + k / 240, 4) for k in range(41)])
+    monkeypatch.setattr(executor, "run_and_measure", run_here)
+    monkeypatch.setattr(executor, "process_time", lambda: spent[-1])
+    monkeypatch.setattr(executor, "WORTH_PROCESSES", 4.0)
+    monkeypatch.setattr(executor, "work", lambda *what: pytest.fail("a process was started"))
+    assert len([*executor.outcomes_of(jobs, 2, Progress())]) == 41
