@@ -87,7 +87,7 @@ def test_points_of_a_pair_lie_half_a_separation_from_both_surfaces(seen):
     for _, a, b, size, manifold in looked_at(seen):
         phi = manifold.phi.min()
         lost = SNAP * size
-        if "cylinder" in sample.pair and phi < 0.0:
+        if ("cylinder" in sample.pair or "cone" in sample.pair) and phi < 0.0:
             lost += ROUND_SHARE * abs(phi) + ROUND_SIZE * size
         near = CUT + STALL * size + np.sqrt(2.0 * lost * abs(phi))
         for point, depth in zip(manifold.points, manifold.phi, strict=True):
@@ -102,7 +102,7 @@ def test_points_of_a_pair_lie_half_a_separation_from_both_surfaces(seen):
 
 def test_coal_finds_the_same_distance_and_no_lesser_depth(seen):
     judge = solids.Judge()
-    round_cores = "cylinder" in seen[0].pair
+    round_cores = "cylinder" in seen[0].pair or "cone" in seen[0].pair
     apart = overlapping = silent = 0
     for i, a, b, size, manifold in looked_at(seen):
         phi = manifold.phi.min()
