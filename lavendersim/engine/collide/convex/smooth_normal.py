@@ -93,12 +93,13 @@ def circle_point(part, n):
 
 @inner
 def on_side(part, n):
-    """Return the unit vector nearest to n that leans as a cone's side does; n where none is."""
+    """Return the unit vector nearest to n that leans as a cone's side does; n along the axis."""
     out = plus_scaled(n, -dot(n, part.along), part.along)
-    far = length(out)
-    if far == 0.0:
+    if length(out) <= SAME:
         return n
-    return plus_scaled(scaled(part.radius, part.along), leaning_cosine(part) / far, out)
+    out = unit(out)  # twice, as round-off of a short one is along the axis
+    out = unit(plus_scaled(out, -dot(out, part.along), part.along))
+    return plus_scaled(scaled(part.radius, part.along), leaning_cosine(part), out)
 
 
 @inner
