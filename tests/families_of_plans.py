@@ -99,6 +99,7 @@ FAMILIES = (
             *(
                 "trackers/pressed_against_a_wall",
                 "scenes/rocking_ellipsoid",
+                "scenes/rolling_cone",
                 "scenes/bowl",
                 "scenes/drum",
                 "scenes/triangles",

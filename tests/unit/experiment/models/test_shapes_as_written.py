@@ -21,7 +21,16 @@ def with_shape(words: str, orientation: str = "[1, 0, 0, 0]") -> str:
 
 def test_only_hulls_and_compounds_have_principal_axes_of_their_own() -> None:
     assert TURNED == ("hull", "compound")
-    assert set(SOLIDS) == {"sphere", "box", "capsule", "cylinder", "ellipsoid", "cone", "hull", "compound"}
+    assert set(SOLIDS) == {
+        "sphere",
+        "box",
+        "capsule",
+        "cylinder",
+        "ellipsoid",
+        "cone",
+        "hull",
+        "compound",
+    }
     assert set(KINDS) == set(SOLIDS) - {"compound"}
 
 
