@@ -165,7 +165,7 @@ def test_a_solid_reaches_as_far_as_its_shape_says() -> None:
     rng = np.random.default_rng(SEED)
     scene = placed(rng, 80, 1.0)
     shapes = [shape_of(k % 4, size) for k, size in enumerate(scene.size)]
-    # An ellipsoid or a cone is no such sum: how far it reaches is unknown, and it is culled nowhere.
+    # An ellipsoid or a cone is no such sum: how far they reach is unknown; nothing is culled.
     assert {type(shape) for shape in shapes} == set(PRIMITIVES) - {Ellipsoid, Cone}
     smooth = sums_of([Ellipsoid(kind="ellipsoid", semi_axes=(0.1, 0.2, 0.3))])
     assert extents(smooth, scene.rotation[:1], np.array([0.0, 0.0, 1.0])).tolist() == [math.inf]
