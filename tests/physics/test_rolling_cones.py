@@ -2,7 +2,7 @@
 
 On its side, without slip, it turns about its line of contact, and this about the apex by theta:
     T = 3 M h^2 theta'^2 (1 + 5 cos^2 a)/40   tan a = r/h (Landau and Lifshitz, Mechanics, 32)
-On a plane tilted by b its centre, 3/4 h from the apex along the axis, swings about the line of fall:
+On a plane tilted by b its centre, 3/4 h from the apex along the axis, swings to the line of fall:
     theta'' = -w^2 sin theta,  w^2 = 5 g sin b cos a / (h (1 + 5 cos^2 a))
 On its base it stands until its weight, h/4 above that, leaves the disc: tan b = 4 r/h.
 """
