@@ -99,6 +99,7 @@ FAMILIES = (
             *(
                 "trackers/pressed_against_a_wall",
                 "scenes/rocking_ellipsoid",
+                "scenes/rolling_cone",
                 "scenes/bowl",
                 "scenes/drum",
                 "scenes/triangles",
@@ -112,6 +113,7 @@ FAMILIES = (
             "cylinder_box",
             "cylinder_cylinder",
             "cylinder_plane",
+            "cone_plane",
             "ellipsoid_plane",
             *("sphere_bowl", "box_bowl", "sphere_drum", "cylinder_drum"),
             *("sphere_mesh", "box_mesh", "cylinder_mesh"),
@@ -133,7 +135,9 @@ FAMILIES = (
     Family(
         ("hard/found/cohesion_of_what_turns", "hard/found/springs_beside_what_gives_way"),
         shape_pairs=tuple(
-            name for name, pair in SHAPE_PAIRS.items() if "ellipsoid" in name or pair.own_normals
+            name
+            for name, pair in SHAPE_PAIRS.items()
+            if {"ellipsoid", "cone"} & {*pair.shapes} or pair.own_normals
         ),
         effects=(
             *("anisotropic_friction", "contact_patch", "joint", "joint_stop", "motor"),

@@ -18,7 +18,7 @@ from .compile import inner, kernel
 from .effects import made_once
 from .joint_turn import put_mean_ends
 from .overlooked_points import has_flat_faces
-from .records import CYLINDER, PLANE, ROPE, TOUCHING
+from .records import CONE, CYLINDER, PLANE, ROPE, TOUCHING
 from .rotation import half_turn, is_round
 from .row_terms import row_terms
 from .spec import Spec
@@ -80,11 +80,11 @@ def make_stand_midway(spec: Spec) -> Any:
 
 @inner
 def radius_of_cap(a, b):
-    """Radius of the smaller cylinder of a pair, unbounded where there is none [m]."""
+    """Radius of the smaller round cap of a pair, unbounded where there is none [m]."""
     radius = UNBOUNDED
-    if a.shape == CYLINDER:
+    if a.shape == CYLINDER or a.shape == CONE:
         radius = a.hx
-    if b.shape == CYLINDER:
+    if b.shape == CYLINDER or b.shape == CONE:
         radius = min(radius, b.hx)
     return radius
 
@@ -162,7 +162,7 @@ def make_look(spec: Spec) -> Any:
     marks, mark_middle = made_once(spec, "mark_middle")
     arms = row_terms(spec).bilateral and row_terms(spec).levers
     own_normals = has_own_normals(spec)
-    caps = any(shape.kind == CYLINDER for shape in shapes_in(spec))
+    caps = any(shape.kind in (CYLINDER, CONE) for shape in shapes_in(spec))
 
     def look(state, count, poses, workspace):
         bodies, contacts = state.bodies, state.contacts

@@ -31,6 +31,7 @@ ELLIPSOID: Final = 7
 BOWL: Final = 8
 DRUM: Final = 9
 MESH: Final = 10
+CONE: Final = 11
 CAVITIES: Final = frozenset({"bowl", "drum"})  # shapes that other bodies are inside of
 ROPE_END: Final = -1  # where a rope or a joint is on a body: `collide.rope`, `collide.joint`
 
@@ -68,8 +69,9 @@ BODY: Final[list[Field]] = [
     ("inv_m", F8),  # 1/mass [1/kg], 0 for fixed bodies
     ("shape", I8),  # its kind, see above
     # Plane: unit normal [-]. Box: half edge lengths [m]. Sphere: radius in hx [m]. Capsule and
-    # cylinder: radius in hx, half length along the body's z in hz [m]. Bowl and drum:
-    # radius in hx [m]. Hull, compound and mesh: unused.
+    # cylinder: radius in hx, half length along the body's z in hz [m]. Cone: radius in hx, height
+    # of the centre over the base in hz [m]. Bowl and drum: radius in hx [m]. Ellipsoid: semi-axes
+    # [m]. Hull, compound and mesh: unused.
     ("hx", F8),
     ("hy", F8),
     ("hz", F8),

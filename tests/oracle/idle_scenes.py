@@ -121,9 +121,10 @@ def others(**surface: float) -> dict[str, Any]:
         {"kind": "capsule", "radius": 0.12, "length": 0.25},
         {"kind": "cylinder", "radius": 0.16, "length": 0.3},
         {"kind": "ellipsoid", "semi_axes": [0.15, 0.12, 0.1]},
+        {"kind": "cone", "radius": 0.14, "height": 0.3},
     )
     bodies = {"floor": plane(**surface)}
-    for k, (shape, x) in enumerate(zip(shapes, (-0.5, 0.0, 0.5, 1.0), strict=True)):
+    for k, (shape, x) in enumerate(zip(shapes, (-0.5, 0.0, 0.5, 1.0, 1.5), strict=True)):
         properties = {"orientation": TILTED, "velocity": (-3.0 * x, 0.0, -1.0), **surface}
         bodies[shape["kind"]] = body(shape, (x, 0.05 * k, 0.35), **properties)
     return bodies

@@ -147,7 +147,7 @@ def random_hulls(rng: np.random.Generator, count: int = 8) -> list:
 
 def put(row: np.void, kind: str, half, centre=(0.0, 0.0, 0.0), matrix=None, **properties) -> None:
     """Fill one body record; a capsule and a cylinder take (radius, -, half length)."""
-    row["shape"] = (*solids.KINDS, *solids.CAVITIES).index(kind)
+    row["shape"] = solids.KINDS.index(kind)
     row["hx"], row["hy"], row["hz"] = half
     row["offset"] = properties.get("offset", 0.0)
     if kind == "hull":
@@ -168,6 +168,7 @@ def put(row: np.void, kind: str, half, centre=(0.0, 0.0, 0.0), matrix=None, **pr
             "box": float(np.linalg.norm(half)),
             "capsule": half[0] + half[2],
             "ellipsoid": max(half),
+            "cone": max(3.0 * half[2], float(np.hypot(half[0], half[2]))),
             "cylinder": float(np.hypot(half[0], half[2])),
         }[kind]
 

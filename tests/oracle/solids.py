@@ -14,7 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-KINDS = ("plane", "sphere", "box", "capsule", "cylinder", "hull", "compound", "ellipsoid")
+KINDS = (
+    *("plane", "sphere", "box", "capsule", "cylinder", "hull", "compound", "ellipsoid"),
+    *("bowl", "drum", "mesh", "cone"),
+)
 CAVITIES = ("bowl", "drum")  # no solids: what is in them is judged by its farthest point
 
 
@@ -59,6 +62,9 @@ def reach(solid: Solid, n: np.ndarray) -> float:
         return centre + float(abs(local[2]) * half[2] + np.linalg.norm(n) * half[0])
     if solid.kind == "ellipsoid":
         return centre + float(np.linalg.norm(local * half))
+    if solid.kind == "cone":  # its base is half[2] below the centre, its apex thrice that above
+        of_rim = np.hypot(local[0], local[1]) * half[0] - local[2] * half[2]
+        return centre + float(max(of_rim, 3.0 * local[2] * half[2]))
     if solid.kind == "cylinder":
         return centre + float(abs(local[2]) * half[2] + np.hypot(local[0], local[1]) * half[0])
     return centre + float(np.max(solid.corners @ local))
@@ -92,6 +98,8 @@ def off_surface(solid: Solid, point: np.ndarray) -> float:
         return float(np.linalg.norm(local) - half[0])
     if solid.kind == "ellipsoid":
         return off_ellipsoid(local, half)
+    if solid.kind == "cone":
+        return off_cone(local, half)
     if solid.kind == "hull":
         heights = []
         for loop in solid.faces:
@@ -129,6 +137,26 @@ def off_ellipsoid(point: np.ndarray, half: np.ndarray) -> float:
     return side * float(np.linalg.norm(p - nearest))
 
 
+def off_cone(point: np.ndarray, half: np.ndarray) -> float:
+    """Return the signed distance of a point to a cone [m]: to the sides of a triangle, turned."""
+    p = np.array([np.hypot(point[0], point[1]), point[2]])
+    rim, apex, foot = np.array([half[0], -half[2]]), np.array([0.0, 3.0 * half[2]]), -half[2]
+    side = apex - rim
+    outward = np.array([side[1], -side[0]]) / np.linalg.norm(side)
+    inside = outward @ (p - rim) < 0.0 and p[1] > foot
+    nearest = []
+    for a, b in ((rim, apex), (np.array([0.0, foot]), rim)):
+        along = np.clip((p - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
+        nearest.append(np.linalg.norm(p - a - along * (b - a)))
+    return float(min(nearest)) * (-1.0 if inside else 1.0)
+
+
+def middle_of(solid: Solid) -> np.ndarray:
+    """Return where coal has a solid's origin: a cone's half way up its axis."""
+    above = float(solid.half[2]) if solid.kind == "cone" else 0.0
+    return solid.centre + above * solid.matrix[:, 2]
+
+
 class Judge:
     """Signed distances by coal, of solids that are made once."""
 
@@ -156,6 +184,8 @@ class Judge:
             return coal.Cylinder(half[0], 2.0 * half[2])
         if solid.kind == "ellipsoid":
             return coal.Ellipsoid(*half)
+        if solid.kind == "cone":
+            return coal.Cone(half[0], 4.0 * half[2])
         points = coal.StdVec_Vec3s()
         points.extend(list(solid.corners))
         return coal.Convex.convexHull(points, False, "Qt")
@@ -163,13 +193,13 @@ class Judge:
     def distance(self, a: Solid, b: Solid) -> tuple[float, np.ndarray | None]:
         """Return the signed distance and the normal from A to B; None where coal gave up."""
         transform = self.coal.Transform3s
-        where_a = transform() if a.kind == "plane" else transform(a.matrix, a.centre)
+        where_a = transform() if a.kind == "plane" else transform(a.matrix, middle_of(a))
         result = self.coal.DistanceResult()
         self.coal.distance(
             self.shape(a),
             where_a,
             self.shape(b),
-            transform(b.matrix, b.centre),
+            transform(b.matrix, middle_of(b)),
             self.request,
             result,
         )

@@ -29,7 +29,7 @@ from lavendersim.scene.laws import needs
 
 # Drawn engines choose among the first: another one there would draw others of the same seed.
 SIMPLE = ("sphere", "box", "capsule", "cylinder", "hull")
-SOLIDS = (*SIMPLE, "compound", "ellipsoid")
+SOLIDS = (*SIMPLE, "compound", "ellipsoid", "cone")
 SOLVERS = (
     "adaptive",
     "projected_gauss_seidel",
@@ -210,6 +210,8 @@ class _Pen(Draw):
             return {"kind": kind, "radius": radius, "length": length}
         if kind == "ellipsoid":
             return {"kind": kind, "semi_axes": [size * self.share(0.02) for _ in range(3)]}
+        if kind == "cone":
+            return {"kind": kind} | {k: size * self.share(0.02) for k in ("radius", "height")}
         if kind == "hull":
             points = [[size * (c + 0.1 * self.unit()) for c in point] for point in HULL]
             return {"kind": kind, "points": points}

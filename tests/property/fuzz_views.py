@@ -25,7 +25,7 @@ UNITS = {
     "frequency": (0, -1), "rate": (0, -1), "damping": (0, -1), "linear": (0, -1),
     "stiffness": (0, -2), "compliance": (0, 2), "quadratic": (-1, 0), "angular": (2, -1),
     "radius": (1, 0), "length": (1, 0), "size": (1, 0), "semi_axes": (1, 0), "points": (1, 0),
-    "vertices": (1, 0), "heights": (1, 0), "spacing": (1, 0),
+    "height": (1, 0), "vertices": (1, 0), "heights": (1, 0), "spacing": (1, 0),
     "position": (1, 0), "offset": (1, 0), "centre": (1, 0), "inertia": (2, 0),
     "rest_length": (1, 0), "point_a": (1, 0), "point_b": (1, 0), "point": (1, 0), "through": (1, 0),
     "displacement": (1, 0), "teleport": (1, 0), "slop": (1, 0), "cache_distance": (1, 0),
@@ -250,6 +250,8 @@ def _reach(shape: Tree) -> float:
         return 0.5 * float(np.linalg.norm(shape["size"]))
     if shape["kind"] == "ellipsoid":
         return float(max(shape["semi_axes"]))
+    if shape["kind"] == "cone":
+        return float(max(0.75 * shape["height"], shape["radius"]))
     if shape["kind"] == "mesh":
         return float(np.linalg.norm(shape["vertices"], axis=1).max())
     return float(shape["radius"] + 0.5 * shape.get("length", 0.0))

@@ -258,7 +258,16 @@ def check_mirrored(bodies, gravity, known):
     np.testing.assert_allclose(image[:, 3:], TURNED * plain[:, 3:], atol=known / 0.1)
 
 
-LENGTHS = ("radius", "length", "size", "semi_axes", "points", "position", "offset")  # of shapes [m]
+LENGTHS = (
+    "radius",
+    "length",
+    "size",
+    "semi_axes",
+    "height",
+    "points",
+    "position",
+    "offset",
+)  # of shapes [m]
 
 
 def scaled(value: Any, factor: float) -> Any:

@@ -69,7 +69,7 @@ vector = st.tuples(unit, unit, unit)
 rigid = st.just(0.0)
 soft = st.floats(0.0, 2.0**-13, allow_subnormal=False, width=32)  # [m/N]
 
-SHAPES = ("sphere", "box", "capsule", "cylinder", "ellipsoid", "hull", "compound")
+SHAPES = ("sphere", "box", "capsule", "cylinder", "ellipsoid", "cone", "hull", "compound")
 HULL = ((0.2, 0, -0.12), (-0.1, 0.17, -0.12), (-0.1, -0.17, -0.12), (0.02, 0.03, 0.25))
 # Half a metre apart, so that bodies some 0.4 m wide that fly together meet within a few steps.
 CORNERS = 0.5 * np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0)], float)
@@ -103,6 +103,8 @@ def shape(kind: str, size: float) -> dict[str, Any]:
         return {"kind": kind, "radius": 0.16 * size, "length": 0.3}
     if kind == "ellipsoid":
         return {"kind": kind, "semi_axes": [0.2 * size, 0.14 * size, 0.1]}
+    if kind == "cone":
+        return {"kind": kind, "radius": 0.16 * size, "height": 0.36}
     if kind == "hull":
         return {"kind": kind, "points": [[size * c for c in point] for point in HULL]}
     ball, block = shape("sphere", 0.6 * size), shape("box", 0.6 * size)

@@ -14,6 +14,7 @@ from lavendersim.cell.shapes.box import Box
 from lavendersim.cell.shapes.capsule import Capsule
 from lavendersim.cell.shapes.cavity import Bowl, Cavity, Drum
 from lavendersim.cell.shapes.compound import CellCompound, CellPart
+from lavendersim.cell.shapes.cone import Cone
 from lavendersim.cell.shapes.convex import PRIMITIVES, CellSimple
 from lavendersim.cell.shapes.cylinder import Cylinder
 from lavendersim.cell.shapes.ellipsoid import Ellipsoid
@@ -43,6 +44,7 @@ __all__ = [
     "CellPart",
     "CellShape",
     "CellSimple",
+    "Cone",
     "Convex",
     "Cylinder",
     "Drum",

@@ -19,7 +19,7 @@ class Cavity(ConfigModel):
 
     # Shapes of which a file of `engine/collide/pairs` says where they touch it.
     HOLDS: ClassVar[frozenset[str]] = frozenset(
-        {"sphere", "box", "capsule", "cylinder", "ellipsoid", "hull"}
+        {"sphere", "box", "capsule", "cylinder", "ellipsoid", "cone", "hull"}
     )
     if TYPE_CHECKING:
         kind: str

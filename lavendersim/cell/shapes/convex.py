@@ -8,6 +8,7 @@ from pydantic import Field
 
 from lavendersim.cell.shapes.box import Box
 from lavendersim.cell.shapes.capsule import Capsule
+from lavendersim.cell.shapes.cone import Cone
 from lavendersim.cell.shapes.cylinder import Cylinder
 from lavendersim.cell.shapes.ellipsoid import Ellipsoid
 from lavendersim.cell.shapes.hull import CellHull
@@ -21,6 +22,7 @@ PRIMITIVES: Final[tuple[type[Primitive], ...]] = (
     Capsule,
     Cylinder,
     Ellipsoid,
+    Cone,
 )
 
 if TYPE_CHECKING:

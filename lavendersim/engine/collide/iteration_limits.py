@@ -16,7 +16,9 @@ from .pairs import SHAPE_PAIRS
 from .shapes import has_curved
 
 # Files of `pairs` whose kernels look for a depth by EPA.
-OF_EDGES = tuple(f"{shape}_mesh" for shape in ("box", "capsule", "cylinder", "hull", "ellipsoid"))
+OF_EDGES = tuple(
+    f"{shape}_mesh" for shape in ("box", "capsule", "cylinder", "hull", "ellipsoid", "cone")
+)
 BY_EPA = ("convex", "ellipsoid_convex", *OF_EDGES)
 
 

@@ -131,7 +131,7 @@ class Body(_Matter):
     """One rigid body. Planes are static; a movable body has exactly one of mass and density."""
 
     shape: Shape = Field(
-        description="plane, sphere, box, capsule, cylinder, ellipsoid, hull, compound, bowl, "
+        description="plane, sphere, box, capsule, cylinder, ellipsoid, cone, hull, compound, bowl, "
         "drum, mesh or height_field"
     )
     position: Position | None = Field(

@@ -18,12 +18,12 @@ from lavendersim.engine.collide.convex.hull_geometry import hull_geometry
 from lavendersim.engine.collide.scratch import allocate_scratch
 
 CAVITIES = ("bowl", "drum")
-INSIDE = ("sphere", "capsule", "box", "hull", "cylinder", "ellipsoid")
+INSIDE = ("sphere", "capsule", "box", "hull", "cylinder", "ellipsoid", "cone")
 RADIUS, EVERYWHERE = 2.0, 1e3
 CENTRE = np.array([0.3, -0.2, 0.5])
 POSES = 12
 # The most points of each shape.
-MOST = {"sphere": 1, "capsule": 2, "box": 8, "hull": 24, "cylinder": 8, "ellipsoid": 1}
+MOST = {"sphere": 1, "capsule": 2, "box": 8, "hull": 24, "cylinder": 8, "ellipsoid": 1, "cone": 5}
 
 
 def contacts(cavity: str, a, b, margin: float = EVERYWHERE, hulls=()):
@@ -70,16 +70,19 @@ def farthest(kind: str, b, hulls, axis: np.ndarray) -> float:
         return float(np.linalg.norm(off(vertices_of(it), axis), axis=1).max())
 
     def surface(t: np.ndarray) -> np.ndarray:
-        if kind == "cylinder":
+        if kind in ("cylinder", "cone"):
             ring = np.array([half[0] * np.cos(t[0]), half[0] * np.sin(t[0]), t[1] * half[2]])
             return it.centre + matrix @ ring
         u = np.array([np.cos(t[0]) * np.sin(t[1]), np.sin(t[0]) * np.sin(t[1]), np.cos(t[1])])
         return it.centre + matrix @ (half * u)
 
     best = 0.0
+    if kind == "cone":  # or its apex
+        apex = it.centre + 3.0 * half[2] * matrix[:, 2]
+        best = float(np.linalg.norm(off(apex[None], axis)))
     for start in np.linspace(0.0, 2.0 * np.pi, 9)[:-1]:
-        for other in (-1.0, 1.0) if kind == "cylinder" else (0.4, 1.5, 2.7):
-            free = 1 if kind == "cylinder" else 2
+        for other in {"cylinder": (-1.0, 1.0), "cone": (-1.0,)}.get(kind, (0.4, 1.5, 2.7)):
+            free = 1 if kind in ("cylinder", "cone") else 2
 
             def reach(t, other=other, free=free):
                 full = t if free == 2 else (t[0], other)
@@ -109,6 +112,6 @@ def check_gaps(cavity: str, kind: str) -> None:
             # On the wall, whose normal leads to the axis, and the body's surface half a gap on;
             # of a capsule's end that is nearer to the middle the ball's, inside of it.
             np.testing.assert_allclose(wall, -RADIUS * n, atol=1e-13)
-            near = 2e-9 if kind in ("cylinder", "ellipsoid") else 1e-13
+            near = 2e-9 if kind in ("cylinder", "ellipsoid", "cone") else 1e-13
             if kind != "capsule" or gap == phi.min():
                 assert abs(solids.off_surface(solid(b, hulls), place + 0.5 * gap * n)) < near

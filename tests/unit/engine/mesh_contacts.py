@@ -1,9 +1,9 @@
 """Bodies beside a mesh: their contacts, and how far apart all triangles are by brute force.
 
 The distance of two polyhedra that are apart is that of a corner of one and a triangle of the other,
-or of two edges. Of a ball and a capsule the core is a point or a segment. A cylinder and an
-ellipsoid are no farther than points of their surface; that they are no nearer says what separates
-them.
+or of two edges. Of a ball and a capsule the core is a point or a segment. A cylinder, an
+ellipsoid and a cone are no farther than points of their surface; that they are no nearer says what
+separates them.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from lavendersim.geometry.point_sets import hulls_meet
 from lavendersim.scene.body_rows import MATRIX
 from lavendersim.scene.triangle_tables import mesh_tables
 
-KINDS = ("sphere", "capsule", "box", "hull", "cylinder", "ellipsoid")
+KINDS = ("sphere", "capsule", "box", "hull", "cylinder", "ellipsoid", "cone")
 CENTRE = np.array([0.3, -0.2, 0.5])
 POSES = 12
 FINE = 200  # points of a rim
-ROUND = ("cylinder", "ellipsoid")
+ROUND = ("cylinder", "ellipsoid", "cone")
 EXACT, PLACED = 1e-9, 1e-8  # [m] distances of GJK; points, whose error is that of the direction
 BOX = CellMesh(
     kind="mesh",
@@ -110,6 +110,9 @@ def core(kind: str, it: solids.Solid) -> tuple[np.ndarray, float]:
     if kind == "cylinder":
         local = np.concatenate([np.add(circle, (0, 0, end)) for end in (-1, 1)])
         return it.centre + (local * (half[0], half[0], half[2])) @ turn.T, 0.0
+    if kind == "cone":
+        rim = circle * half[0] - (0.0, 0.0, half[2])
+        return it.centre + np.vstack([rim, (0.0, 0.0, 3.0 * half[2])]) @ turn.T, 0.0
     tilts = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 41)
     local = np.concatenate([np.add(np.cos(t) * circle[::4], (0, 0, np.sin(t))) for t in tilts])
     return it.centre + (local * half) @ turn.T, 0.0

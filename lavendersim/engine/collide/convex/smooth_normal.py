@@ -9,7 +9,8 @@ are apart or overlap by less than the least radius of curvature, so that near th
 each round squares the error.
 
 A core that is no smooth body is taken by its parts, each as if it went on: a corner (R = 0), an
-edge or axis (n across it), a rim (a circle). GJK's last simplex says which may be nearest. That a
+edge or axis (n across it), a rim (a circle), a cone's
+side (n leans by half its angle). GJK's last simplex says which may be nearest. That a
 part is, its normal proves: nothing of A lies farther along n, and the nearest point of the part is
 one of A's. If no part has its proof a face is nearest, whose normal is known, or round-off hides
 which: then the normal counts that separates the whole bodies most.
@@ -17,10 +18,11 @@ which: then the normal counts that separates the whole bodies most.
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import Any, NamedTuple
 
 from ...compile import inner, kernel, once
-from ...records import CYLINDER, ELLIPSOID
+from ...records import CONE, CYLINDER, ELLIPSOID
 from ...vectors import (
     Vec3,
     across,
@@ -37,6 +39,7 @@ from ...vectors import (
 )
 from ..shape_kernels import make_best_face, make_radius
 from ..shapes import shapes_in
+from ..shapes.cone import APEX, lean, slant
 from ..shapes.ellipsoid import point_of_normal, turned_by
 from .separation import make_separation_along
 
@@ -50,17 +53,17 @@ ROUND_OFF, PROVED = 1e-15, 1e-13
 # Vertices nearer to each other than this share of the sizes are one corner [-].
 SAME = 1e-9
 # Parts of a core.
-CORNER, AXIS, CIRCLE, SMOOTH = 0, 1, 2, 3
+CORNER, AXIS, CIRCLE, SMOOTH, SIDE = 0, 1, 2, 3, 4
 
 
 class CorePart(NamedTuple):
     """A part of A's core that goes on for ever; relative to A's centre, world axes."""
 
     kind: int
-    point: Vec3  # the corner, the middle of the edge or axis, the circle's centre
+    point: Vec3  # the corner, the middle of the edge or axis, the circle's centre, the apex
     along: Vec3  # unit, of the edge or axis; of the circle across its plane
-    half: float  # length of the edge or axis [m]
-    radius: float  # of the circle, or that A has around the axis [m]
+    half: float  # length of the edge or axis, whole of a cone's side [m]
+    radius: float  # of the circle, or that A has around the axis [m]; of a side its sine `lean`
 
 
 class Offer(NamedTuple):
@@ -88,6 +91,23 @@ def circle_point(part, n):
     return plus_scaled(part.point, part.radius / reach, side), reach
 
 
+@inner
+def on_side(part, n):
+    """Return the unit vector nearest to n that leans as a cone's side does; n along the axis."""
+    out = plus_scaled(n, -dot(n, part.along), part.along)
+    if length(out) <= SAME:
+        return n
+    out = unit(out)  # twice, as round-off of a short one is along the axis
+    out = unit(plus_scaled(out, -dot(out, part.along), part.along))
+    return plus_scaled(scaled(part.radius, part.along), leaning_cosine(part), out)
+
+
+@inner
+def leaning_cosine(part):
+    """Return the cosine of half a cone's angle."""
+    return sqrt((1.0 - part.radius) * (1.0 + part.radius))
+
+
 @once
 def make_gap(spec: Any) -> Any:
     """Return `kernel(a, b, offset, part, n) -> g(n)`."""
@@ -111,7 +131,7 @@ def make_gap(spec: Any) -> Any:
 @once
 def make_newton_step(spec: Any) -> Any:
     """Return `kernel(a, b, part, n, g) -> (d, whether s is concave here)`."""
-    smooth = spec.collides("ellipsoid_ellipsoid")
+    smooth, cones = spec.collides("ellipsoid_ellipsoid"), spec.collides("ellipsoid_cone")
 
     def newton_step(a, b, part, n, g):
         s = dot(n, g)
@@ -124,6 +144,16 @@ def make_newton_step(spec: Any) -> Any:
             if not uu > 0.0:
                 return u, False
             return scaled(dot(u, g) / uu, u), True
+        if cones:
+            if part.kind == SIDE:
+                # Round the axis: n = cos a e(t) + sin a z, s'' = -(cos a e . g + cos^2 a R).
+                cosine, t = leaning_cosine(part), unit(cross(part.along, n))
+                out = plus_scaled(n, -part.radius, part.along)
+                local = into_body(b, t)
+                bend = dot(out, g) + cosine * cosine * turned_by(b, p, h, local, local)
+                if not bend > 0.0:
+                    return t, False
+                return scaled(cosine * cosine * dot(t, g) / bend, t), True
         uw = turned_by(b, p, h, local_u, local_w)
         ww = s + turned_by(b, p, h, local_w, local_w)
         if part.kind == CIRCLE:
@@ -154,6 +184,7 @@ def make_newton_step(spec: Any) -> Any:
 def make_normal_of_part(spec: Any) -> Any:
     """Return `kernel(a, b, offset, part, n) -> n` that separates a part of A and B most, near n."""
     gap, newton_step = make_gap(spec), make_newton_step(spec)
+    cones = spec.collides("ellipsoid_cone")
 
     def normal_of_part(a, b, offset, part, n):
         if part.kind == AXIS:
@@ -161,6 +192,9 @@ def make_normal_of_part(spec: Any) -> Any:
             if length(n) == 0.0:
                 return part.along
             n = unit(n)
+        if cones:
+            if part.kind == SIDE:
+                n = on_side(part, n)
         g = gap(a, b, offset, part, n)
         s, grain = dot(n, g), ROUND_OFF * (a.bound + b.bound)
         for _ in range(ROUNDS):
@@ -171,6 +205,9 @@ def make_normal_of_part(spec: Any) -> Any:
             m, g_m, s_m = n, g, s
             for _ in range(HALVINGS):
                 m = unit(plus_scaled(n, share, d))
+                if cones:
+                    if part.kind == SIDE:
+                        m = on_side(part, m)
                 g_m = gap(a, b, offset, part, m)
                 s_m = dot(m, g_m)
                 if s_m >= s - grain:
@@ -191,6 +228,13 @@ def make_normal_of_part(spec: Any) -> Any:
 def beyond(part, n, g):
     """How far g is from what it is where a part is nearest to B [m]: along n, but for an edge."""
     off = plus_scaled(g, -dot(n, g), n)
+    if part.kind == SIDE:
+        # From the apex down the side.
+        cosine = leaning_cosine(part)
+        down = scaled(1.0 / cosine, plus_scaled(scaled(part.radius, n), -1.0, part.along))
+        along = dot(off, down)
+        outside = max(-along, max(along - part.half, 0.0))
+        return outside + length(plus_scaled(off, -along, down))
     if part.kind != AXIS:
         return length(off)
     along = dot(off, part.along)
@@ -275,6 +319,23 @@ def make_of_cylinder(spec: Any) -> Any:
 
 
 @once
+def make_of_cone(spec: Any) -> Any:
+    """Return `kernel(a, b, offset, best, hulls) -> Offer`, of the side, the apex and the rim."""
+    offered = make_offered(spec)
+
+    def of_cone(a, b, offset, best, hulls):
+        axis, none = Vec3(a.r02, a.r12, a.r22), Vec3(0.0, 0.0, 0.0)
+        apex = scaled(APEX * a.hz, axis)
+        side = CorePart(SIDE, apex, axis, slant(a), lean(a))
+        best = offered(a, b, offset, side, best, hulls)
+        best = offered(a, b, offset, CorePart(CORNER, apex, none, 0.0, 0.0), best, hulls)
+        rim = CorePart(CIRCLE, scaled(-a.hz, axis), axis, 0.0, a.hx)
+        return offered(a, b, offset, rim, best, hulls)
+
+    return kernel(of_cone, spec)
+
+
+@once
 def make_smooth_normal(spec: Any) -> Any:
     """Return `kernel(a, b, offset, n, count, scratch) -> Offer`: of cores, B's an ellipsoid's.
 
@@ -285,6 +346,8 @@ def make_smooth_normal(spec: Any) -> Any:
     cylinders, smooth = CYLINDER in kinds, spec.collides("ellipsoid_ellipsoid")
     of_vertices = make_of_vertices(spec)
     of_cylinder: Any = make_of_cylinder(spec) if cylinders else None
+    cones = spec.collides("ellipsoid_cone")
+    of_cone: Any = make_of_cone(spec) if cones else None
 
     def smooth_normal(a, b, offset, n, count, scratch):
         hulls = scratch.hulls
@@ -298,6 +361,10 @@ def make_smooth_normal(spec: Any) -> Any:
         if cylinders:
             if a.shape == CYLINDER:
                 best = of_cylinder(a, b, offset, best, hulls)
+                by_parts = False
+        if cones:
+            if a.shape == CONE:
+                best = of_cone(a, b, offset, best, hulls)
                 by_parts = False
         if by_parts:
             best = of_vertices(a, b, offset, best, count, scratch)

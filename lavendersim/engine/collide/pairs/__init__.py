@@ -74,9 +74,18 @@ DECLARED = (
             ("hull", "hull"),
             ("cylinder", "cylinder"),
             ("ellipsoid", "ellipsoid"),
+            ("cone", "cone"),
         )
     ),
-    *map(on_mesh, ("sphere", "box", "capsule", "cylinder", "hull", "ellipsoid")),
+    *map(on_mesh, ("sphere", "box", "capsule", "cylinder", "hull", "ellipsoid", "cone")),
+    own("plane", "cone"),
+    own("cone", "sphere"),
+    by_gjk("box", "cone"),
+    by_gjk("cone", "capsule"),
+    by_gjk("cone", "cylinder"),
+    by_gjk("hull", "cone"),
+    by_gjk("cone", "cone"),
+    smooth("cone"),
 )
 
 

@@ -91,34 +91,51 @@ def make_put_lowest(spec):
 
 
 @once
-def make(spec):
-    """Return `kernel(cavity, cylinder, margin, scratch) -> count`; it writes `scratch.manifold`."""
+def make_put_rim(spec):
+    """Return `kernel(cavity, body, end, margin, manifold, count) -> count`.
+
+    end: how far the rim, of radius hx, is from the body's centre along its z [m], and the name of
+    its first point.
+    """
     axis_of, from_centre = make_axis(spec), make_from_centre(spec)
     put_point, put_lowest = make_put_point(spec), make_put_lowest(spec)
 
+    def put_rim(cavity, body, end, margin, manifold, count):
+        along, first = end
+        own, r = Vec3(body.r02, body.r12, body.r22), body.hx
+        centre = plus_scaled(position(body), along, own)
+        e1 = Vec3(body.r00, body.r10, body.r20)
+        if cavity.shape == BOWL:
+            q = from_centre(cavity, centre)
+            q = plus_scaled(q, -dot(q, own), own)
+            if length(q) > DISTINCT * r:
+                e1 = scaled(1.0 / length(q), q)
+            rim = Rim(centre, r, e1, cross(own, e1), first)
+            for k in range(QUARTERS):
+                core = CorePoint(point_of(rim, 0.5 * pi * k), 0.0, rim.feature + k)
+                count = put_point(cavity, core, margin, manifold, count)
+        else:
+            # Where the axes are parallel the rim is a circle: its farthest point is along q.
+            aside = cross(own, axis_of(cavity))
+            if length(aside) > DISTINCT:
+                e1 = scaled(1.0 / length(aside), aside)
+            rim = Rim(centre, r, e1, cross(own, e1), first)
+            count = put_lowest(cavity, rim, margin, manifold, count)
+        return count
+
+    return kernel(put_rim, spec)
+
+
+@once
+def make(spec):
+    """Return `kernel(cavity, cylinder, margin, scratch) -> count`; it writes `scratch.manifold`."""
+    put_rim = make_put_rim(spec)
+
     def cylinder_cavity(cavity, cylinder, margin, scratch):
-        own = Vec3(cylinder.r02, cylinder.r12, cylinder.r22)
-        r, manifold, count = cylinder.hx, scratch.manifold, 0
+        count = 0
         for end in range(2):
             along = cylinder.hz if end else -cylinder.hz
-            centre = plus_scaled(position(cylinder), along, own)
-            e1 = Vec3(cylinder.r00, cylinder.r10, cylinder.r20)
-            if cavity.shape == BOWL:
-                q = from_centre(cavity, centre)
-                q = plus_scaled(q, -dot(q, own), own)
-                if length(q) > DISTINCT * r:
-                    e1 = scaled(1.0 / length(q), q)
-                rim = Rim(centre, r, e1, cross(own, e1), RIM * end)
-                for k in range(QUARTERS):
-                    core = CorePoint(point_of(rim, 0.5 * pi * k), 0.0, rim.feature + k)
-                    count = put_point(cavity, core, margin, manifold, count)
-            else:
-                # Where the axes are parallel the rim is a circle: its farthest point is along q.
-                aside = cross(own, axis_of(cavity))
-                if length(aside) > DISTINCT:
-                    e1 = scaled(1.0 / length(aside), aside)
-                rim = Rim(centre, r, e1, cross(own, e1), RIM * end)
-                count = put_lowest(cavity, rim, margin, manifold, count)
+            count = put_rim(cavity, cylinder, (along, RIM * end), margin, scratch.manifold, count)
         return count
 
     return kernel(cylinder_cavity, spec)

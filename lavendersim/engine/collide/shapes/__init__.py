@@ -13,6 +13,7 @@ from ...records import (
     CAPSULE,
     CAVITIES,
     COMPOUND,
+    CONE,
     CYLINDER,
     DRUM,
     ELLIPSOID,
@@ -38,6 +39,7 @@ DECLARED = (
     Shape("bowl", BOWL, oriented=False),
     Shape("drum", DRUM),  # its axis is the body's z
     Shape("mesh", MESH, kernels=True, concave=True, fields=tuple(MESH_BODY)),
+    Shape("cone", CONE, kernels=True, curved=True),
 )
 
 SHAPES = {

@@ -7,7 +7,16 @@ import math
 import numpy as np
 import pytest
 
-from lavendersim.cell.shapes import PRIMITIVES, Box, Capsule, CellHull, Cylinder, Ellipsoid, Sphere
+from lavendersim.cell.shapes import (
+    PRIMITIVES,
+    Box,
+    Capsule,
+    CellHull,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Sphere,
+)
 
 TETRAHEDRON = ((-0.1, -0.2, -0.1), (0.3, -0.2, -0.1), (-0.1, 0.6, -0.1), (-0.1, -0.2, 0.3))
 SHAPES = {
@@ -15,6 +24,7 @@ SHAPES = {
     "box": Box(kind="box", size=(0.2, 0.5, 0.9)),
     "capsule": Capsule(kind="capsule", radius=0.2, length=0.7),
     "cylinder": Cylinder(kind="cylinder", radius=0.4, length=0.3),
+    "cone": Cone(kind="cone", radius=0.3, height=0.7),
     "ellipsoid": Ellipsoid(kind="ellipsoid", semi_axes=(0.2, 0.5, 0.3)),
     "hull": CellHull(
         kind="hull",

@@ -35,7 +35,9 @@ def test_an_engine_counts_what_it_is_composed_of(pair: str, effects: tuple[str, 
         narrow_phase.make(spec)
     kernels = {name for _, name in composed}
     assert (has_gjk(spec), has_epa(spec)) == ("gjk" in kernels, "epa" in kernels)
-    curved = not {"cylinder", "ellipsoid"}.isdisjoint(SHAPE_PAIRS[pair].shapes)  # of their cores
+    curved = not {"cylinder", "ellipsoid", "cone"}.isdisjoint(
+        SHAPE_PAIRS[pair].shapes
+    )  # of their cores
     assert has_ascent(spec) == (curved and "ascend" in kernels)
     assert has_advance(spec) == ("find_impact" in kernels)
     assert has_limits(spec) == any((has_gjk(spec), has_epa(spec), has_advance(spec)))

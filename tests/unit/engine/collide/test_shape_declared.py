@@ -13,7 +13,7 @@ def test_what_has_a_support_or_a_radius_is_convex_and_nothing_else() -> None:
     assert Shape("grown", rounded=True).convex
     assert Shape("core", kernels=True).convex
     convex = {name for name, shape in SHAPES.items() if shape.convex}
-    assert convex == {"sphere", "box", "capsule", "cylinder", "hull", "ellipsoid"}
+    assert convex == {"sphere", "box", "capsule", "cylinder", "hull", "ellipsoid", "cone"}
 
 
 def test_a_file_of_a_shape_defines_no_maker_that_nobody_asks_for() -> None:

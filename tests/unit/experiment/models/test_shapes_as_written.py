@@ -21,7 +21,16 @@ def with_shape(words: str, orientation: str = "[1, 0, 0, 0]") -> str:
 
 def test_only_hulls_and_compounds_have_principal_axes_of_their_own() -> None:
     assert TURNED == ("hull", "compound")
-    assert set(SOLIDS) == {"sphere", "box", "capsule", "cylinder", "ellipsoid", "hull", "compound"}
+    assert set(SOLIDS) == {
+        "sphere",
+        "box",
+        "capsule",
+        "cylinder",
+        "ellipsoid",
+        "cone",
+        "hull",
+        "compound",
+    }
     assert set(KINDS) == set(SOLIDS) - {"compound"}
 
 
@@ -60,7 +69,7 @@ def test_turns_in_both_forms_become_unit_quaternions(
         (
             f"kind: compound, parts: [{{shape: {{kind: §compound, {CUBE}}}}}]",
             'unknown kind "compound" in scene.bodies.it.shape.parts[0].shape; '
-            "valid here: sphere, box, capsule, cylinder, ellipsoid, hull",
+            "valid here: sphere, box, capsule, cylinder, ellipsoid, cone, hull",
         ),
         (
             "kind: §sphair, radius: 1",
