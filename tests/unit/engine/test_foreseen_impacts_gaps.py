@@ -96,7 +96,7 @@ def open_for(meeting: Meeting) -> bool:
     return meeting.stays()
 
 
-def test_what_has_other_features_or_another_path_is_not_told_by_one_gap(rng: Any) -> None:
+def test_what_has_other_features_or_another_path_is_not_known_by_one_gap(rng: Any) -> None:
     for name in SHAPES:
         assert open_for(Meeting(name, rng)) == (name in ALONE)
     turning = Meeting("sphere_plane", rng)
