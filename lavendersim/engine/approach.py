@@ -92,12 +92,18 @@ def make_note_acceleration(spec: Spec) -> Any:
     """Return `kernel(bodies, velocities, motion, params)`, once a part of some length is solved."""
 
     noted, note_rate = made_once(spec, "note_rate")
+    kinematic = step_terms(spec).kinematic
 
     def note_acceleration(bodies, velocities, motion, params):
         if params.dt < SHORT * params.timestep:
             return
         for i in range(motion.shape[0]):
             body, v, m = bodies[i], velocities[i], motion[i]
+            moves = body.inv_m > 0.0
+            if kinematic:
+                moves = moves or body.kinematic == 1
+            if not moves:
+                continue
             body.ax = (v.vx - m.vx) / params.dt
             body.ay = (v.vy - m.vy) / params.dt
             body.az = (v.vz - m.vz) / params.dt

@@ -16,6 +16,7 @@ from .approach import (
     ELSEWHERE,
     NEVER,
     OVERLAP,
+    ahead,
     make_change_ahead,
     make_forced,
     make_gap_acceleration,
@@ -25,14 +26,16 @@ from .approach import (
     make_slowest,
 )
 from .cavity_flight import make_closing
+from .collide.pairs import SHAPE_PAIRS
 from .collide.shapes import make_is_inside
 from .compile import kernel
-from .effects import made_once
-from .records import TOUCHING
+from .effects import has_hook, made_once
+from .records import CAPSULE, PLANE, TOUCHING
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
 from .stiff_springs import make_restitution_of, make_takes_time, may_rebound
+from .vectors import Vec3, length, minus
 
 # Shortest flight after an impact, in timesteps: shorter ones are contact.
 FLIGHT = 1.0 / 64.0
@@ -50,6 +53,8 @@ REBOUNDS = 2
 # Slowest impact of a spring that is pressed, in what forces change in what is left of the step: it
 # swings by its load as fast, which is no impact. What is undamped has none there.
 PRESSED = 1.0
+# Pairs that touch at no point but those of their rows, wherever they turn to.
+ALONE = frozenset({"sphere_plane", "sphere_sphere", "capsule_plane"})
 LAST = 1.0 - 1e-9  # first guess, in what is left of the step, where only shapes tell
 
 
@@ -149,7 +154,7 @@ def make_foresee(spec: Spec) -> Any:
             comes_back = pair.whole == 1
         if leaves and not (drawn or comes_back):
             contact.waits = 1
-        ahead, slow = False, most
+        flies, slow = False, most
         if gap > params.slop:
             if gap_acceleration(contact, bodies, motion) * left > CURVED * most or gap > FALL:
                 slow = GLANCING * most
@@ -159,13 +164,13 @@ def make_foresee(spec: Spec) -> Any:
                 due = (v + speed) / -a if v > 0.0 else 2.0 * gap / (speed - v)
                 # What is far inside has not left by a rebound: a rope that is too long pulls.
                 inside = contact.phi < -OVERLAP
-                ahead = gap > 0.0 or (due >= FLIGHT * params.timestep and not inside)
-                if ahead and due < left:
+                flies = gap > 0.0 or (due >= FLIGHT * params.timestep and not inside)
+                if flies and due < left:
                     contact.waits, contact.due = 1, due
-                elif ahead and e > 0.0 and contact.phi <= params.slop and not comes_back:
+                elif flies and e > 0.0 and contact.phi <= params.slop and not comes_back:
                     contact.waits = REBOUNDS  # it flies, and meets later
         if turns:
-            waits = (ahead or contact.waits == 1) and not comes_back
+            waits = (flies or contact.waits == 1) and not comes_back
             if waits and contact.due == NEVER and gap > 0.0:
                 # Surfaces that turn may come nearer by as much as this: their shapes decide.
                 ma, mb = motion[contact.a], motion[contact.b]
@@ -222,20 +227,63 @@ def make_let_rebound(spec: Spec) -> Any:
     return kernel(let_rebound, spec)
 
 
+def make_stays_apart(spec: Spec) -> Any:
+    """Return `kernel(contact, pair, bodies, motion, left) -> whether` its gap cannot close.
+
+    By the rate of the gap alone, where a pair has no feature without a row:
+        phi(t) >= phi + v t - (|a| + r) t^2/2,
+    a: of the bodies to each other, by forces; r: |w|^2 h of an end of a capsule, which is slender
+    and goes round its momentum no faster than |w|. The distance of balls curves upwards. None
+    where no pair is of them.
+    """
+    kinds = tuple(SHAPE_PAIRS[name].kind for name in spec.shape_pairs if name in ALONE)
+    if not kinds:
+        return None
+    compound, swept = has_hook(spec, "place_parts"), row_terms(spec).swept
+
+    def stays_apart(contact, pair, bodies, motion, left):
+        if pair.kind not in kinds:
+            return False
+        one, other, ma, mb = bodies[pair.a], bodies[pair.b], motion[contact.a], motion[contact.b]
+        if compound:
+            if one.owner != pair.a or other.owner != pair.b:
+                return False
+        if swept:  # its gap is that of where they pass each other
+            aside = abs(contact.tangential_x) + abs(contact.tangential_y)
+            if aside + abs(contact.tangential_z) > 0.0:
+                return False
+        if one.shape == PLANE:
+            if ma.wx != 0.0 or ma.wy != 0.0 or ma.wz != 0.0:
+                return False
+        change = 0.5 * length(minus(ahead(mb), ahead(ma)))
+        if other.shape == CAPSULE:
+            if other.inv_ix != other.inv_iy or other.inv_iz < other.inv_ix:
+                return False
+            spin = length(Vec3(mb.wx, mb.wy, mb.wz))
+            change += 0.5 * other.hz * spin * spin * left
+        return max(contact.phi, 0.0) + left * (contact.rate - change) > 0.0
+
+    return kernel(stays_apart, spec)
+
+
 def make_follow(spec: Spec) -> Any:
-    """Return `kernel(contacts, count, bodies, motion, left)`; None where nothing turns.
+    """Return `kernel(contacts, pairs, count, bodies, motion, left)`; None where nothing turns.
 
     Bodies that part where they touched, and turn, may meet with other features of theirs: of such
-    a pair one row is due as soon as any of their points can have closed the gap.
+    a pair one row is due as soon as any of their points can have closed the gap, but for those that
+    stay apart by their own gaps.
     """
     if not step_terms(spec).turns:
         return None
     forced, nearest_rate = make_forced(spec), make_nearest_rate(spec)
+    stays_apart = make_stays_apart(spec)
+    alone = stays_apart is not None
 
-    def follow(contacts, count, bodies, motion, left):
+    def follow(contacts, pairs, count, bodies, motion, left):
         first = 0
         while first < count:
             pair, last, waits, least, soonest = contacts[first].pair, first, True, first, left
+            apart = alone
             while last < count and contacts[last].pair == pair:
                 contact = contacts[last]
                 dv, most = forced(contact, motion)
@@ -246,8 +294,13 @@ def make_follow(spec: Spec) -> Any:
                 gap = max(contact.phi, 0.0)
                 if rate * soonest > gap:
                     least, soonest = last, gap / rate
+                if alone:
+                    apart = apart and stays_apart(contact, pairs[pair], bodies, motion, left)
                 last += 1
-            if waits and soonest < left:
+            if apart:
+                for c in range(first, last):
+                    contacts[c].due = NEVER
+            elif waits and soonest < left:
                 contact = contacts[least]
                 contact.located, contact.due = ELSEWHERE, min(contact.due, soonest)
             first = last

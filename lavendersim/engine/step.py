@@ -236,8 +236,9 @@ def make_advance(spec: Spec) -> Any:
                 return full
             instant = False
             if ordered:
-                left = params.dt
-                count, length = order(state, count, workspace, params, counters)
+                left = length = params.dt
+                if count > 0:
+                    count, length = order(state, count, workspace, params, counters)
                 instant = length == 0.0
                 if overlooks:
                     length = min(length, longest)

@@ -250,7 +250,7 @@ def make_order(spec: Spec) -> Any:
         if meets:
             return keep_present(contacts, count), 0.0
         if turns:
-            follow(contacts, count, bodies, motion, left)
+            follow(contacts, state.pairs, count, bodies, motion, left)
         length = left
         while True:
             first, due = first_due(contacts, count)

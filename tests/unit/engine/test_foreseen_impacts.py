@@ -335,7 +335,8 @@ def followed(
     contacts["phi"], contacts["rate"], contacts["waits"] = np.array(gaps).T
     contacts["due"] = due
     motion["vz"][1], motion["wx"][1], motion["dvz"][1] = 1.0, spin, -0.5
-    FOLLOW(records(contacts), len(gaps), records(bodies), records(motion), STEP)
+    rows = records(allocate_pairs(TURNS, 1 + max(pairs)))
+    FOLLOW(records(contacts), rows, len(gaps), records(bodies), records(motion), STEP)
     return contacts
 
 
