@@ -10,7 +10,15 @@ s_1 = s_0 + dt (v_1 - w), the implicit Euler rule. The row is Coulomb's with a s
 so that solvers know of gamma alone. dt is the time for which surfaces touch in the step, by the
 velocities that it begins with.
 
+A damper k_d = 2 zeta_t sqrt(m k_t) beside the spring, m = 1/K_t the mass at the contact along its
+surface, adds -k_d (s_1 - s_0) to p. With h = 2 k_d/(k_t dt), of Euler's rule k_d/(k_t dt), both
+terms of the row, s_0 and gamma, are divided by 1 + h, and the step ends with
+    s_1 = s_0 - 2 (p/(k_t dt) + s_0)/(1 + h)      or      s_1 = s_0 - (p/(k_t dt) + s_0)/(1 + h)
+so that p takes k_d (s_1 - s_0)^2/dt of the energy.
+
 Where a step ends s is no longer than mu F_n/k_t: the spring gives way, which takes from the energy.
+Of Hertz's contact k_t is that of the depth there where it is less than the step's, for what is let
+out keeps its stretch: with the step's, impacts that stick as they are let out are of order 1.
 As a contact is pressed further in, k_t grows and the force is kept; as it is let out, the stretch
 is (Walton and Braun 1986, as cited by Thornton; background, not opened): neither gives energy.
 The stretch turns with the normal, by the least turn, and about it with the mean of both spins.
@@ -169,9 +177,15 @@ def make_yield_row(spec: Spec) -> Any:
         if contact.stretch_k > 0.0:
             one, two = recalled_along(contact, k)
         contact.yield_k, contact.yield_dt = k, dt
+        contact.yield_ratio = pair.tangential_stiffness
         contact.yield_1, contact.yield_2 = one, two
-        contact.gamma_t = 1.0 / (k * dt * dt)
-        one, two = one / dt, two / dt
+        damping = 2.0 * pair.tangential_damping_ratio / (dt * sqrt(k * contact.k_t))
+        if mean:
+            damping *= 2.0
+        contact.yield_damping = damping
+        follows = 1.0 / (1.0 + damping)
+        contact.gamma_t = follows / (k * dt * dt)
+        one, two = follows * one / dt, follows * two / dt
         if mean:
             contact.gamma_t *= 4.0
             x, y, z = relative_velocity(contact, ma, mb)
@@ -206,7 +220,7 @@ def make_normal_force(spec: Spec) -> Any:
 
 def make_keep_stretch(spec: Spec) -> Any:
     """Return `kernel(contacts, count, velocities, motion, params)`: stretches as the step ends."""
-    mean = step_terms(spec).centred
+    mean, curved = step_terms(spec).centred, row_terms(spec).curved
     normal_velocity, normal_force = make_normal_velocity(spec), make_normal_force(spec)
 
     def stretched(contact, va, vb, params):
@@ -215,11 +229,20 @@ def make_keep_stretch(spec: Spec) -> Any:
         one = -contact.lambda_1 / (k * contact.yield_dt)
         two = -contact.lambda_2 / (k * contact.yield_dt)
         force = contact.lambda_n / contact.yield_dt
+        followed = 1.0 / (1.0 + contact.yield_damping)
         if mean:
-            one, two = 2.0 * one - contact.yield_1, 2.0 * two - contact.yield_2
+            followed *= 2.0
+        kept = 1.0 - followed
+        one = followed * one + kept * contact.yield_1
+        two = followed * two + kept * contact.yield_2
+        if mean:
             v = normal_velocity(contact, va, vb)
             depth = -(contact.phi + 0.5 * params.dt * (v + contact.spring_v))
             force = normal_force(contact, depth, v)
+            if curved:
+                if contact.hertz_stiffness > 0.0:  # let out, its stretch is that of its end
+                    ends = 1.5 * contact.hertz_stiffness * sqrt(max(depth, 0.0))
+                    k = min(k, max(contact.yield_ratio * ends, SHALLOW * k))
         most, length = contact.mu * force / k, sqrt(one * one + two * two)
         if length > most:
             one, two = one * (most / length), two * (most / length)

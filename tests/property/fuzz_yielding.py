@@ -24,3 +24,5 @@ def give_way(
             surface.pop(key, None)
         if surface.get("friction", 0.0) > 0.0 and pen.coin():
             surface["tangential_stiffness"] = pen.power(-2.0, 1.0)
+            if pen.coin():
+                surface["tangential_damping_ratio"] = 2.0 * pen.share()

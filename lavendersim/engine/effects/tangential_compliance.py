@@ -6,7 +6,8 @@ normal, 1/c of a compliance, of Hertz's contact that of its depth, 3/2 k sqrt(d)
 pair's `tangential_stiffness`: of balls of one material 2 (1 - nu)/(2 - nu), k_t = 8 G* a, a the
 radius of the area of contact (Mindlin 1949; cited as background, not opened). What sticks swings
 with sqrt(k_t/m), m = 1/(1/m_A + 1/m_B + ...) along the surface, and slips once it is stretched by
-mu F_n/k_t; a superball turns its slip round by it.
+mu F_n/k_t; a superball turns its slip round by it. Beside the spring acts a damper, where a
+`tangential_damping_ratio` zeta is given: F_t = -k_t s - 2 zeta sqrt(m k_t) s'.
 
 A step solves the law itself (`tangential_springs`): of order 2, with the energy kept while it
 sticks, where bodies move by the mean of the velocities at its ends (`contact_midpoint`), of order
@@ -135,15 +136,29 @@ EFFECT = Effect(
             mix=larger,
             needs="friction",
         ),
+        SurfaceKey(
+            name="tangential_damping_ratio",
+            type=COEFFICIENT,
+            default=0.0,
+            doc="of critical damping along the surface, of a contact that gives way along it; "
+            "a pair takes the larger",
+            mix=larger,
+            needs="tangential_stiffness",
+        ),
     ),
     fields=Fields(
-        pair=[("tangential_stiffness", "f8")],  # kappa [-]
+        pair=[
+            ("tangential_stiffness", "f8"),  # kappa [-]
+            ("tangential_damping_ratio", "f8"),  # zeta_t [-]
+        ],
         contact=[
             ("surface_1", "f8"),  # added to the slip along t1 [m/s]
             ("surface_2", "f8"),
             ("gamma_t", "f8"),  # gamma of its tangents [1/kg]
             ("yield_k", "f8"),  # k_t; 0: it does not give way [N/m]
+            ("yield_ratio", "f8"),  # kappa [-]
             ("yield_dt", "f8"),  # for which it touches in the step [s]
+            ("yield_damping", "f8"),  # what its damper adds, by what its spring has [-]
             ("yield_1", "f8"),  # stretch that its row begins with, along t1 and t2 [m]
             ("yield_2", "f8"),
             *[(f"stretch_{axis}", "f8") for axis in "xyz"],  # world axes [m]

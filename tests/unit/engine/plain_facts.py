@@ -14,6 +14,7 @@ SURFACE = {
     **dict.fromkeys(("friction", "restitution", "compliance"), 0.0),
     **dict.fromkeys(("torsional_friction", "rolling_friction", "tangential_restitution"), 0.0),
     **dict.fromkeys(("hertz_stiffness", "tangential_stiffness"), 0.0),
+    "tangential_damping_ratio": 0.0,
 }
 
 

@@ -26,7 +26,7 @@ EULER = Spec(effects=tuple(sorted((*NEEDED, "tangential_compliance"))))
 MEAN = EULER.including("contact_midpoint", "midpoint")
 C, KAPPA, MU, DT = 1e-5, 0.8, 0.5, 0.004
 K = KAPPA / C
-PAIR = one_row(tangential_stiffness=KAPPA, friction=MU)
+PAIR = one_row(tangential_stiffness=KAPPA, tangential_damping_ratio=0.0, friction=MU)
 PARAMS = one_row(dt=DT, cache_distance=0.1)
 
 
@@ -69,6 +69,17 @@ def test_a_row_of_the_trapezoidal_rule_has_the_slip_of_the_start() -> None:
     # Of a belt of 0.05 m/s both ends' slips have its speed.
     assert row["surface_1"] == pytest.approx(0.3 + 2 * 0.05, rel=1e-15)
     assert row["surface_2"] == pytest.approx(-4e-4 / DT, rel=1e-15)
+
+
+@pytest.mark.parametrize(("spec", "whole"), [(EULER, 1.0), (MEAN, 2.0)], ids=["euler", "mean"])
+def test_a_damper_divides_both_terms_of_the_row(spec: Spec, whole: float) -> None:
+    damped = one_row(tangential_stiffness=KAPPA, tangential_damping_ratio=0.25, friction=MU)
+    (plain,) = yielded(spec, contacts(spec, stretch_y=2e-4, stretch_k=K))
+    (row,) = yielded(spec, contacts(spec, stretch_y=2e-4, stretch_k=K), damped)
+    # 2 zeta sqrt(m k_t) of m = 1/4 kg
+    by = 1.0 + whole * 2.0 * 0.25 * math.sqrt(K / 4.0) / (K * DT)
+    for name in ("gamma_t", "surface_2"):
+        assert row[name] == pytest.approx(plain[name] / by, rel=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -122,6 +133,17 @@ def test_a_stretch_is_that_of_the_impulse() -> None:
     # The mean of both ends' stretches has the force.
     (row,) = kept(MEAN, contacts(MEAN, lambda_n=1.0, lambda_1=-0.08, yield_1=1e-4))
     assert row["stretch_x"] == pytest.approx(2.0 * 0.08 / (K * DT) - 1e-4, rel=1e-14)
+
+
+def test_a_damper_leaves_less_of_the_impulse_to_the_stretch() -> None:
+    """p = -k_t dt (s_0 + s_1)/2 - k_d (s_1 - s_0), k_d = h k_t dt/2; of Euler's rule s_1, h."""
+    for spec, whole in ((EULER, 1.0), (MEAN, 2.0)):
+        pushed = contacts(spec, lambda_n=9.0, lambda_1=-0.06, yield_1=1e-4, yield_damping=0.6)
+        (row,) = kept(spec, pushed)
+        s_0, s_1 = 1e-4, row["stretch_x"]
+        sprung = s_1 if spec is EULER else 0.5 * (s_0 + s_1)
+        held = K * DT * (sprung + 0.6 / whole * (s_1 - s_0))
+        assert held == pytest.approx(0.06, rel=1e-13)
 
 
 def test_a_stretch_ends_no_longer_than_friction_holds() -> None:

@@ -79,12 +79,13 @@ def test_others_mix(name: str) -> None:
 
 GRAIN = "across_grain"  # needs a body with a grain, beside which nothing may roll
 STIFF = ["hertz_stiffness", "hunt_crossley_dissipation"]  # a law beside which no compliance stands
-YIELDING = "tangential_stiffness"  # beside which there is no static friction
-APART = (GRAIN, *STIFF, YIELDING)
+# Beside these there is no static friction.
+YIELDING = ["tangential_stiffness", "tangential_damping_ratio"]
+APART = (GRAIN, *STIFF, *YIELDING)
 TOGETHER = [key.name for key in SURFACE_KEYS if key.name not in APART]
 
 
-@pytest.mark.parametrize("names", [TOGETHER, ["friction", GRAIN], STIFF, ["friction", YIELDING]])
+@pytest.mark.parametrize("names", [TOGETHER, ["friction", GRAIN], STIFF, ["friction", *YIELDING]])
 def test_every_property_can_be_written_of_a_pair(names: list[str]) -> None:
     written = dict.fromkeys(names, 0.125)
     line = json.dumps({"between": ["steel", "ice"], **written}).replace('"', "")
