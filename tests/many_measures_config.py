@@ -18,7 +18,10 @@ duration: 1/24
 record: {residuals: all, velocities: true}
 measure:
   apex:
-    {kind: first_apex, body: ball, above: floor, over: {form: rebound_height, bodies: [ball, floor]}}
+    kind: first_apex
+    body: ball
+    above: floor
+    over: {form: rebound_height, bodies: [ball, floor]}
   hit: {kind: impact_impulse, body: ball, against: {form: newton_impulse, bodies: [floor, ball]}}
   dropped: {kind: impact_impulse, body: ball, over: {form: drop_impulse, bodies: [ball, floor]}}
   pushed: {kind: step_impulse, body: ball, step: 3, over: {form: weight, bodies: [ball]}}
