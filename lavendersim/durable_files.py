@@ -23,7 +23,14 @@ from typing import Final
 FEW: Final = 32
 AT_ONCE: Final = 16
 BUFFER: Final = 1024 * 1024  # [B] of a file that is written in pieces
+MOST_BYTES: Final = 150  # of a name in a path, of 255: a time and a digest stand beside it
 _number = itertools.count()
+
+
+def path_name(name: str, most: int = MOST_BYTES) -> str:
+    """Return a name with `_` for what a terminal would obey, cut to so many bytes of UTF-8."""
+    shown = "".join(one if one.isprintable() else "_" for one in name)
+    return shown.encode()[:most].decode("utf-8", "ignore")
 
 
 @contextlib.contextmanager

@@ -43,7 +43,8 @@ def render(template: str, *, has_player: bool = False, **values: Any) -> str:
     script = PLAYER.read_text("utf-8") if has_player else ""
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     page = {"script": script, "script_digest": digest}
-    return _environment().get_template(template).render(**page, **values)
+    text = _environment().get_template(template).render(**page, **values)
+    return text.encode("utf-8", "replace").decode()  # bytes of a file's name may be no UTF-8
 
 
 def _environment() -> Environment:
@@ -94,7 +95,7 @@ def picture(cell: Any, scale: float = 1.0, *, moving: bool = False) -> Picture:
 def address(path: Path, folder: Path) -> str:
     """Return where a file is as seen from the folder of the page, for an attribute."""
     relative = os.path.relpath(path.resolve(), folder.resolve())
-    return quote(Path(relative).as_posix())
+    return quote(os.fsencode(Path(relative).as_posix()))  # also of names that are no UTF-8
 
 
 def number(value: float) -> str:

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from lavendersim.cell import CellConfig
+from lavendersim.errors import LavenderError
 from lavendersim.figures.series import band_along
 from lavendersim.figures.specs.ideal import Ideal
 from lavendersim.measures.cell_judgements import evaluated
@@ -107,7 +108,7 @@ def _patched(form: ClosedForm, cell: CellConfig, path: str, number: float) -> fl
     """Return the closed form with one number of the config replaced; None where it has no place."""
     try:
         return evaluate_form(form, _replaced(cell, path.split("."), number))
-    except (KeyError, IndexError, TypeError, ValueError):
+    except (KeyError, IndexError, TypeError, ValueError, LavenderError):
         return None
 
 

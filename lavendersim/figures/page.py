@@ -25,7 +25,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
-from lavendersim.durable_files import write_together
+from lavendersim.durable_files import path_name, write_together
 from lavendersim.figures.style import DPI, LINE_HEIGHT, STYLE
 
 POINTS_PER_INCH: Final = 72.0
@@ -62,7 +62,7 @@ def write(stem: Path, compose: Callable[..., Figure], *values: Any) -> list[Path
     The directory is made where it is missing. Where they cannot be written, on a full disk for
     example, earlier ones stay as they were.
     """
-    paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("png", "svg")]
+    paths = [stem.with_name(f"{path_name(stem.name)}.{suffix}") for suffix in ("png", "svg")]
     with style.context(STYLE, after_reset=True):
         figure = compose(*values)
         # `savefig` would draw a page twice for each file: once for its layout alone.

@@ -27,6 +27,7 @@ import numpy as np
 
 from lavendersim.cell import Box, CellBody, CellConfig
 from lavendersim.cell.mixing import mixed
+from lavendersim.errors import UsageError
 from lavendersim.geometry.bodies import (
     extent_along,
     inverse_inertia,
@@ -42,7 +43,10 @@ from lavendersim.measures.specs.base import ClosedForm
 
 
 def evaluate_form(form: ClosedForm, cell: CellConfig) -> float:
-    """Return the closed form's value in a cell, SI units."""
+    """Return the closed form's value in a cell, SI units.
+
+    NaN where it has none; UsageError for bodies whose contact has no closed geometry.
+    """
     bodies = tuple(cell.scene.bodies[name] for name in form.bodies)
     return FORMS[form.form](cell, *bodies)
 
@@ -68,7 +72,7 @@ def contact_geometry(a: CellBody, b: CellBody) -> tuple[Floats, Floats]:
     if kinds[1] == "plane" or kinds == ("sphere", "box"):
         point, normal = contact_geometry(b, a)
         return point, -normal
-    raise ValueError(f"no closed contact geometry for {kinds[0]} and {kinds[1]}")
+    raise UsageError(f"no closed contact geometry for {kinds[0]} and {kinds[1]}")
 
 
 def _box_sphere(body: CellBody, box: Box, sphere: CellBody) -> tuple[Floats, Floats]:
@@ -78,7 +82,7 @@ def _box_sphere(body: CellBody, box: Box, sphere: CellBody) -> tuple[Floats, Flo
     apart = turn @ (local - nearest)
     distance = math.sqrt(float(apart @ apart))
     if distance == 0.0:
-        raise ValueError("the sphere's centre lies inside the box: no closed contact geometry")
+        raise UsageError("the sphere's centre lies inside the box: no closed contact geometry")
     return vector(body.position) + turn @ nearest, apart / distance
 
 
@@ -116,8 +120,12 @@ def newton_separation_velocity(cell: CellConfig, a: CellBody, b: CellBody) -> fl
 
 
 def impact_speed(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
-    """Return the speed [m/s] of a body dropped from rest when it reaches the plane."""
-    return math.sqrt(2.0 * _pull(cell, plane) * clearance(moving, plane))
+    """Return the speed [m/s] of a body dropped from rest when it reaches the plane.
+
+    NaN where it starts in the plane, or gravity pulls it away.
+    """
+    pull, height = _pull(cell, plane), clearance(moving, plane)
+    return math.sqrt(2.0 * pull * height) if pull >= 0.0 and height >= 0.0 else math.nan
 
 
 def drop_impulse(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
@@ -160,16 +168,19 @@ def slop(cell: CellConfig) -> float:
 
 
 def steady_penetration_above_slop(cell: CellConfig, moving: CellBody, plane: CellBody) -> float:
-    """Return d - slop [m] at rest on a compliant contact."""
+    """Return d - slop [m] at rest on a compliant contact; NaN where gravity pulls away from it."""
     left = 1.0 - cell.numerics.projection
     load = mass_of(moving) * _pull(cell, plane)
+    if not load >= 0.0:
+        return math.nan
     between = mixed(moving.surface, plane.surface)
     if between.hertz_stiffness > 0.0:
         return float((load / between.hertz_stiffness) ** (2.0 / 3.0) - cell.numerics.slop)
     indentation = between.compliance * load
     if cell.numerics.compliance_law == "spring" and cell.numerics.stabilisation_gain == 0.0:
         return float(indentation) - cell.numerics.slop
-    return float(left * indentation / (1.0 - left * (1.0 - cell.numerics.stabilisation_gain)))
+    back = 1.0 - left * (1.0 - cell.numerics.stabilisation_gain)
+    return float(left * indentation / back) if back > 0.0 else math.nan  # nothing lifts it
 
 
 def pair_restitution(a: CellBody, b: CellBody, speed: float) -> float:

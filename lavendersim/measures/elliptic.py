@@ -41,7 +41,12 @@ def jacobi(u: Floats, m1: float) -> tuple[Floats, Floats, Floats]:
 
 
 def integral(phase: float, m1: float) -> float:
-    """Return F(phase | m), the u whose amplitude is this phase, for |phase| <= pi."""
+    """Return F(phase | m), the u whose amplitude is this phase, for |phase| <= pi.
+
+    NaN of what is not finite, and of m1 < 0.
+    """
+    if not (math.isfinite(phase) and 0.0 <= m1 < math.inf):
+        return math.nan  # the means below would never meet
     if abs(phase) > math.pi / 2.0:
         return math.copysign(2.0 * quarter_period(m1), phase) - integral(
             math.copysign(math.pi, phase) - phase, m1

@@ -6,7 +6,9 @@ Euler's equations I1 w1' = (I2 - I3) w2 w3 (cyclic), I1 <= I2 <= I3, have with t
     A1^2 = P/(I1 (I3 - I1)), A2^2 = P/(I2 (I3 - I2)), A3^2 = Q/(I3 (I3 - I1)),
     rate^2 = (I3 - I2) Q/(I1 I2 I3),  1 - m = (I3 - I1) D/((I3 - I2) Q),
     P = 2 E I3 - L^2,  Q = L^2 - 2 E I1,  D = L^2 - 2 E I2.
-P, Q and D are summed as differences of moments, which do not cancel. For D < 0 the axes 1 and 3
+P, Q and D are summed as differences of moments, which do not cancel. They are taken in units in
+which the largest moment and the largest |w| are about 1, powers of two apart, so that no product of
+them is beyond the numbers of 64 bits. For D < 0 the axes 1 and 3
 change places, and s w1 its sign. An exchange of two axes is a reflection, in which angular
 velocities change their sign.
 """
@@ -14,7 +16,7 @@ velocities change their sign.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -57,7 +59,20 @@ class FreeRotation:
 
 
 def free_rotation(moments: Floats, omega: Floats) -> FreeRotation:
-    """Return the motion that starts with omega in body axes [rad/s]."""
+    """Return the motion that starts with omega in body axes [rad/s], all moments above 0."""
+    exponent = math.frexp(float(np.max(np.abs(omega))))[1]
+    # of moments only their ratios count, a time is in turns of omega
+    moments = np.ldexp(moments, -math.frexp(float(np.max(moments)))[1])
+    scaled = _scaled_rotation(moments, np.ldexp(omega, -exponent))
+    return replace(
+        scaled,
+        amplitudes=np.ldexp(scaled.amplitudes, exponent),
+        rate=float(np.ldexp(scaled.rate, exponent)),
+    )
+
+
+def _scaled_rotation(moments: Floats, omega: Floats) -> FreeRotation:
+    """Return the motion; the largest moment and the largest |omega| are from 1/2 to 1."""
     order = [int(axis) for axis in np.argsort(moments, kind="stable")]
     middle = float(moments[order[1]])
     if float(np.sum(moments * (moments - middle) * omega**2)) < 0.0:
@@ -78,7 +93,7 @@ def free_rotation(moments: Floats, omega: Floats) -> FreeRotation:
         a2 = math.sqrt(p / (i2 * (i3 - i2)))
         a3 = math.sqrt(q / (i3 * (i3 - i1)))
         rate = math.sqrt((i3 - i2) * q / (i1 * i2 * i3))
-        m1 = (i3 - i1) * d / ((i3 - i2) * q)
+        m1 = min((i3 - i1) * d / ((i3 - i2) * q), 1.0)  # round-off, where i1 = i2 but for it
     # I1 w1' = (I2 - I3) w2 w3 requires this product of the three signs
     product = math.copysign(1.0, i3 - i2)
     s3 = math.copysign(1.0, w3)

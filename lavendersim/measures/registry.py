@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from lavendersim.errors import UsageError
 from lavendersim.measures import kinds
 from lavendersim.measures.closed_forms import evaluate_form
 from lavendersim.measures.interfaces import Trace, Value
@@ -30,13 +31,18 @@ def evaluate(spec: MeasureSpec, trace: Trace) -> Value:
 
 
 def beside_form(spec: MeasureSpec, value: Value, trace: Trace) -> Value:
-    """Return the value of a measure beside its closed form, where it has one."""
+    """Return the value of a measure beside its closed form, where it has one.
+
+    UsageError where that has no value, as a drop from within the plane.
+    """
     form = spec.over or spec.against
     if form is None:
         return value
     ideal = evaluate_form(form, trace.config)
     if ideal == 0.0:
         return float("nan")
+    if ideal != ideal and not np.isnan(value).all():
+        raise UsageError(f"{form.form} has no value in this scene")
     fraction: Value = value / ideal
     return fraction if spec.over else np.abs(fraction - 1.0)
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lavendersim.cell.record import NONE
-from lavendersim.durable_files import flush_tree, write_whole, written_aside
+from lavendersim.durable_files import flush_tree, path_name, write_whole, written_aside
 from lavendersim.errors import UsageError
 from lavendersim.experiment import Experiment, load_experiment
 from lavendersim.experiment.cell import Cell
@@ -88,7 +88,7 @@ class Finished(NamedTuple):
         return convergence_notices(self)
 
 
-MOST_NAME, MOST_OVERRIDE = 150, 40  # characters of a directory's name, for what runs in it
+MOST_OVERRIDE = 40  # characters of a directory's name, for each
 
 
 # What adds to a run's directory: it is given the run and the measures of its cells.
@@ -105,7 +105,7 @@ def make_directory(experiment: Experiment, root: Path, in_text: Sequence[str] = 
     read = "\n".join((experiment.text, *options.overrides))
     digest = hashlib.sha256(read.encode("utf-8", "surrogatepass")).hexdigest()[:8]
     changed = map(_short, (*in_text, *options.overrides))
-    name = "-".join(filter(None, (experiment.name, options.solver, *changed)))[:MOST_NAME]
+    name = path_name("-".join(filter(None, (experiment.name, options.solver, *changed))))
     root.mkdir(parents=True, exist_ok=True)
     # A name that sorts by age even when several runs start within one second.
     for attempt in range(1000):

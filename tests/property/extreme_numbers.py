@@ -39,6 +39,7 @@ from lavendersim.runner.plans import distinct, shared_plans
 from lavendersim.scene.explanation import explain_all
 from lavendersim.scene.plan import Plan, union
 from tests.many_keys_config import MANY_KEYS
+from tests.many_measures_config import MANY_MEASURES
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 STEPS = 10
@@ -73,7 +74,8 @@ def texts() -> dict[str, str]:
     """Return the configs whose numbers are replaced, by their names."""
     names = " ".join(OF_CONFIGS).split()
     found = {name: (CONFIGS / f"{name}.yaml").read_text(encoding="utf-8") for name in names}
-    return found | {"many keys": MANY_KEYS}  # what those leave at its default
+    # all measures, and what those leave at its default
+    return found | {"many measures": MANY_MEASURES, "many keys": MANY_KEYS}
 
 
 def numbers_of(text: str) -> list[tuple[int, int]]:

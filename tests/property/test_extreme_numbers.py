@@ -12,12 +12,15 @@ import pytest
 
 from lavendersim.errors import ConfigError
 from lavendersim.experiment import load_experiment_text
+from lavendersim.measures.registration import FUNCTIONS
 from tests.drop_config import DROP
+from tests.many_measures_config import MANY_MEASURES
 from tests.property.extreme_numbers import NAME, WidePlans, counted, outcome, texts
 
 MASS = "mass: 1.0"
 RADIUS = "radius: 0.1"
 DURATION = "duration: 0.5"
+MEASURED = WidePlans()
 
 
 @pytest.mark.parametrize("name", texts())
@@ -37,6 +40,38 @@ def test_numbers_of_any_size_are_refused_or_run() -> None:
     assert not defects
     assert counts["refused"] > 5
     assert counts["complete"] + counts["ended early"] > 5
+
+
+def test_numbers_of_any_size_are_measured() -> None:
+    counts, defects = counted(20, seed=3, only=("many measures",))
+    assert not defects
+    assert counts["complete"] > 5
+
+
+def test_nearly_all_kinds_of_measures_are_asked_for() -> None:
+    asked = load_experiment_text(MANY_MEASURES, NAME).measures.values()
+    connections = {"Tension", "JointForce", "JointTorque"}  # a ball has none
+    kinds = {kind.__name__ for kind in FUNCTIONS if kind.__module__.startswith("lavendersim.")}
+    assert kinds - {type(one).__name__ for one in asked} == {*connections, "FromFile"}
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("angular_velocity: [0.01, 5", "angular_velocity: [0.01, 1e308"),
+        ("inertia: [0.003, 0.004, 0.005]", "inertia: [3e49, 4e49, 5e49]"),
+        ("      inertia: [0.003, 0.004, 0.005]\n", ""),
+        ("radius: 0.1", "radius: 1e50"),
+        ("velocity: [0, 0, -0.1]", "velocity: [0, 0, 1e20]"),  # it touches nothing
+        ("gravity: 9.81", "gravity: [0, 0, 9.81]"),
+        ("release: {above: floor, clearance: 0.001}", "position: [0, 0, 0.05]"),
+    ],
+)
+def test_what_no_formula_is_made_for_is_measured(before: str, after: str, tmp_path: Path) -> None:
+    text = MANY_MEASURES.replace(before, after)
+    assert text != MANY_MEASURES
+    end = outcome(text, tmp_path, MEASURED.of("many measures"))
+    assert end.kind in ("complete", "ended early"), end
 
 
 @pytest.mark.parametrize(

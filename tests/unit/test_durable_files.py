@@ -10,7 +10,14 @@ from pathlib import Path
 import pytest
 
 from lavendersim import durable_files
-from lavendersim.durable_files import flush_tree, write_together, write_whole, written_aside
+from lavendersim.durable_files import (
+    MOST_BYTES,
+    flush_tree,
+    path_name,
+    write_together,
+    write_whole,
+    written_aside,
+)
 from tests.file_calls import FileCalls
 
 
@@ -101,3 +108,21 @@ def test_a_tree_is_flushed_with_every_file_and_folder_of_it(
     else:
         flushed = {call.path for call in calls.made if call.name == "fsync"}
         assert flushed == {*files, tmp_path, tmp_path / "cells"}
+
+
+@pytest.mark.parametrize("name", ["drop", "stack_of_six", "wärme", "<script>", "..%2f.x", "a b"])
+def test_a_printable_name_stays(name: str) -> None:
+    assert path_name(name) == name
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("a\x1b[31mb", "a_[31mb"), ("b\udcffc", "b_c"), ("\u202ed", "_d"), ("a\nb\x00", "a_b_")],
+)
+def test_what_a_terminal_would_obey_is_a_line(name: str, words: str) -> None:
+    assert path_name(name) == words
+
+
+def test_bytes_are_counted_and_characters_stay_whole() -> None:
+    assert path_name("字" * 80) == "字" * (MOST_BYTES // 3)
+    assert path_name("字" * 80, 100) == "字" * 33

@@ -11,6 +11,8 @@ from lavendersim.quantities.names import BodyName
 from lavendersim.quantities.quantity import Quantity
 from lavendersim.quantities.readings import POSES
 
+MOST_MARKERS = 100_000  # more than a picture has dots
+
 
 class FreeRotation(Panel):
     """Angular velocity in body axes: Jacobi's solution as lines, the log as markers."""
@@ -18,6 +20,6 @@ class FreeRotation(Panel):
     READS = POSES
     kind: Literal["free_rotation"]
     body: BodyName = Field(description="the free body; the only movable one")
-    markers: Annotated[int, Quantity(whole=True, minimum=2)] = Field(
+    markers: Annotated[int, Quantity(whole=True, minimum=2, maximum=MOST_MARKERS)] = Field(
         default=60, description="how many logged states are marked, evenly spread [-]"
     )

@@ -39,8 +39,8 @@ def _by_bounce(spec: specs.EnergyByBounce | specs.EnergyAfterBounces, trace: Tra
     at_rest = energy_at_rest(trace, spec.body, spec.above, float(heights[0]))
     energy = mechanical_energy(trace) - at_rest
     runs = pushing_runs(trace, contacts_of(trace, spec.body, spec.above))
-    starts = [first for first, _ in runs[1:]] + [len(heights)]
-    for bounce, ((_, last), end) in enumerate(zip(runs, starts, strict=True)):
+    ends = [first for first, _ in runs[1:]] + [len(heights)]
+    for bounce, ((_, last), end) in enumerate(zip(runs, ends, strict=False)):  # or no run at all
         if bounce == spec.bounces:
             break
         apex = last + int(np.argmax(heights[last:end]))

@@ -9,9 +9,10 @@ A kind is a subclass of `Measure` with a field `kind: Literal["its_name"]`. Ever
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, model_validator
 
 from lavendersim.measures.specs.selection import Selection
 from lavendersim.quantities.model import ConfigModel
@@ -32,6 +33,17 @@ FormName = Literal[
     "steady_penetration_above_slop",
 ]
 Seconds = Annotated[float, Quantity("s", minimum=0)]
+# What the bodies of a form are, in order; one that is not here takes any number of bodies.
+BODIES_OF: Final[Mapping[str, tuple[str, ...]]] = {
+    **dict.fromkeys(
+        ("newton_impulse", "newton_separation_velocity", "inverse_effective_mass"), ("A", "B")
+    ),
+    **dict.fromkeys(
+        ("impact_speed", "drop_impulse", "rebound_height", "release_height"), ("body", "plane")
+    ),
+    "steady_penetration_above_slop": ("body", "plane"),
+    "slop": (),
+}
 
 
 class ClosedForm(ConfigModel):
@@ -41,6 +53,22 @@ class ClosedForm(ConfigModel):
     bodies: tuple[BodyName, ...] = Field(
         default=(), description="the bodies it speaks of, in order: (A, B), (body, plane), ..."
     )
+
+    @model_validator(mode="after")
+    def _its_bodies(self, info: ValidationInfo) -> Self:
+        roles = BODIES_OF.get(self.form)
+        if roles is None:
+            if not self.bodies:
+                raise sentence_error(f"{self.form} is of bodies, and none is named; write bodies")
+            return self
+        if len(self.bodies) != len(roles):
+            expected = f"bodies: [{', '.join(roles)}]" if roles else "no bodies"
+            raise sentence_error(f"expected {expected} of {self.form}, found {len(self.bodies)}")
+        if roles[1:] == ("plane",) and info.context is not None:
+            refusal = info.context.refusal_of("plane", self.bodies[1])
+            if refusal:
+                raise sentence_error(f"bodies of {self.form}: {refusal}")
+        return self
 
 
 class Measure(Reader):

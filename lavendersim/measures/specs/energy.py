@@ -10,13 +10,15 @@ from lavendersim.measures.specs.base import Measure
 from lavendersim.quantities.names import BodyName, PlaneName
 from lavendersim.quantities.quantity import Quantity
 
+MOST_BOUNCES = 1_000_000  # each has a number, whether the run comes to it or not
+
 
 class _OverBounces(Measure):
     """A body that bounces on a plane, so many times."""
 
     body: BodyName = Field(description="the bouncing body; the only movable one")
     above: PlaneName = Field(description="the plane it bounces on; energy is zero at rest on it")
-    bounces: Annotated[int, Quantity("", minimum=1, whole=True)] = Field(
+    bounces: Annotated[int, Quantity("", minimum=1, maximum=MOST_BOUNCES, whole=True)] = Field(
         description="how many bounces [-]"
     )
 

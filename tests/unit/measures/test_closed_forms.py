@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from synthetic import ball_and_floor
 
+from lavendersim.errors import UsageError
 from lavendersim.measures import closed_forms
 from lavendersim.measures.specs.base import ClosedForm
 from tests.oracle.cells import cell
@@ -110,3 +111,36 @@ def test_steady_penetration_is_the_fixed_point_of_the_step(projection: float, ga
         beyond = (1.0 - projection) * ((1.0 - gain) * beyond + compliance * load)
     measured = evaluate_form(form("steady_penetration_above_slop", "ball", "floor"), config)
     assert measured == pytest.approx(beyond, rel=1e-13, abs=1e-300)
+
+
+@pytest.mark.parametrize("name", ["impact_speed", "drop_impulse"])
+def test_a_drop_from_within_the_plane_or_away_from_it_has_no_form(name: str) -> None:
+    inside = ball_and_floor(position=[0.0, 0.0, 0.05])
+    lifted = ball_and_floor()
+    lifted["scene"]["gravity"] = [0.0, 0.0, 9.81]
+    inside_and_lifted = inside | {"scene": inside["scene"] | {"gravity": [0.0, 0.0, 9.81]}}
+    for config in (inside, lifted, inside_and_lifted):
+        assert math.isnan(evaluate_form(form(name, "ball", "floor"), config))
+
+
+@pytest.mark.parametrize("surface", [{"compliance": 1e-5}, {"hertz_stiffness": 1e5}])
+def test_nothing_rests_where_gravity_pulls_away(surface: dict[str, float]) -> None:
+    config = ball_and_floor(surface=surface)
+    config["scene"]["gravity"] = [0.0, 0.0, 9.81]
+    measured = evaluate_form(form("steady_penetration_above_slop", "ball", "floor"), config)
+    assert math.isnan(measured)
+
+
+def test_what_nothing_lifts_sinks_for_ever() -> None:
+    config = ball_and_floor()
+    config["numerics"] |= {"projection": 0.0, "stabilisation_gain": 0.0}
+    config["numerics"]["compliance_law"] = "regularised"
+    measured = evaluate_form(form("steady_penetration_above_slop", "ball", "floor"), config)
+    assert math.isnan(measured)
+
+
+def test_bodies_without_closed_geometry_are_refused_in_a_sentence() -> None:
+    config = ball_and_floor(shape={"kind": "capsule", "radius": 0.1, "length": 0.2})
+    config["scene"]["bodies"]["floor"]["shape"] = {"kind": "box", "size": [1.0, 1.0, 1.0]}
+    with pytest.raises(UsageError, match="no closed contact geometry for capsule and box"):
+        evaluate_form(form("newton_impulse", "ball", "floor"), config)

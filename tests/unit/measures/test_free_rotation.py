@@ -94,3 +94,40 @@ def test_flips_are_where_the_middle_component_vanishes_once_each_half_period() -
     rate = math.sqrt(50.0006 / 6.0)
     half = 2.0 * math.log(4.0 / math.sqrt(8e-6)) / rate
     assert np.diff(flips) == pytest.approx(np.full(11, half), rel=1e-5)  # next term: m1 K/4
+
+
+@pytest.mark.parametrize(("moments", "omega"), CASES)
+@pytest.mark.parametrize("of_omega", [-1000, -500, 500, 1000])
+@pytest.mark.parametrize("of_moments", [-500, 0, 500])
+def test_other_units_change_no_bit(
+    moments: tuple[float, ...], omega: tuple[float, ...], of_omega: int, of_moments: int
+) -> None:
+    # moments of 1e150 kg m^2 are of the largest box there is; a spin may be any double
+    plain = free_rotation(np.array(moments), np.array(omega))
+    seen = free_rotation(np.ldexp(moments, of_moments), np.ldexp(omega, of_omega))
+    assert (seen.order, seen.phase, seen.m1) == (plain.order, plain.phase, plain.m1)
+    assert seen.rate == math.ldexp(plain.rate, of_omega)
+    assert np.array_equal(seen.amplitudes, np.ldexp(plain.amplitudes, of_omega))
+
+
+def test_the_solution_begins_as_asked_whatever_the_sizes() -> None:
+    random = np.random.default_rng(3)
+    for number in range(400):
+        last = 1.0 + 2.2e-16 * random.integers(-3, 4)  # equal to another one but for round-off
+        moments = [1.0, last, random.uniform(0.1, 1.9)] if number % 2 else [0.5, 0.8, 1.0]
+        sizes = 10.0 ** random.uniform(-60.0, 60.0, 3) if number % 3 else np.ones(3)
+        omega = random.normal(size=3) * sizes
+        exact = free_rotation(random.permutation(moments), omega)
+        largest = float(np.abs(omega).max())
+        # near the separatrix digits are lost, as `elliptic` says: no more than half of them
+        np.testing.assert_allclose(
+            exact.angular_velocity(np.zeros(1))[0] / largest, omega / largest, atol=1e-7
+        )
+
+
+@pytest.mark.parametrize(
+    ("phase", "m1"),
+    [(math.nan, 0.5), (1.0, math.nan), (2.0, math.nan), (1.0, math.inf), (math.inf, 0.5), (1, -1)],
+)
+def test_the_integral_of_what_is_no_number_is_none(phase: float, m1: float) -> None:
+    assert math.isnan(integral(phase, m1))

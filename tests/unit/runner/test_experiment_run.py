@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
+from lavendersim.durable_files import MOST_BYTES
 from lavendersim.experiment import Experiment, load_experiment_text
 from lavendersim.runner.experiment_run import (
-    MOST_NAME,
     Finished,
     _index_of,
     _plain,
@@ -50,10 +50,18 @@ def test_a_name_says_experiment_solver_and_overrides_and_ends_with_what_was_read
 
 def test_a_name_is_no_longer_than_a_file_system_takes(tmp_path: Path) -> None:
     path = make_directory(made(), tmp_path, in_text=[f"a.key_{k}={'x' * 99}" for k in range(9)])
-    assert len(path.name) <= len("20260101T000000Z.000-") + MOST_NAME + len("-12345678")
+    assert len(path.name) <= len("20260101T000000Z.000-") + MOST_BYTES + len("-12345678")
     assert _short("scene.bodies.ball.mass=1/3") == "mass=1_3"
     assert _short("sweep e=scene.bodies.ball.surface.restitution:[0.2, 0.5]") == "e=0.2_0.5"
     assert "/" not in _short("a.b=../../etc")
+
+
+def test_no_name_of_a_config_is_obeyed_by_a_terminal_or_too_long_for_a_disk(tmp_path: Path) -> None:
+    for name, words in (("a\x1b[31mb", "a_[31mb"), ("b\udcffc", "b_c"), ("\u202ed", "_d")):
+        assert make_directory(made(f"{name}.yaml"), tmp_path).name.split("-")[1] == words
+    long = make_directory(made("字" * 80 + ".yaml"), tmp_path).name  # 240 of 255 bytes
+    assert long.split("-")[1] == "字" * 50
+    assert len(long.encode()) <= 255
 
 
 def digest_of(text: str) -> str:

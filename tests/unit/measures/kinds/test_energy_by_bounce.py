@@ -41,3 +41,8 @@ def test_kinetic_energy_counts_and_the_last_is_the_number_asked_for() -> None:
     log.step["kinetic_energy"][8] = 0.05 * 2.0 * 9.81  # as much as 0.05 m of height
     spec = EnergyAfterBounces(kind="energy_after_bounces", body="ball", above="floor", bounces=2)
     assert evaluate(spec, log) == pytest.approx(0.3 - 1.0, abs=1e-15)
+
+
+def test_a_run_that_pushes_nothing_has_no_apex() -> None:
+    assert np.isnan(by_bounce(2, [])).all()
+    assert np.isnan(by_bounce(2, [(2, 0.0, 0.0)])).all()

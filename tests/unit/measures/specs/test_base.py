@@ -8,7 +8,7 @@ import pytest
 from pydantic import ValidationError
 
 from lavendersim.measures.closed_forms import FORMS
-from lavendersim.measures.specs.base import ClosedForm, FormName, PairMeasure
+from lavendersim.measures.specs.base import BODIES_OF, ClosedForm, FormName, PairMeasure
 from lavendersim.quantities.readings import CONTACTS
 from tests.marked_config import assert_refused, config, refusals
 
@@ -45,3 +45,25 @@ def test_bodies_of_a_pair_exist() -> None:
         'body: no body is called "bal"; did you mean "ball"?',
     )
     assert PairMeasure.READS == CONTACTS
+
+
+@pytest.mark.parametrize(
+    ("form", "sentence"),
+    [
+        ("impact_speed", "expected bodies: [body, plane] of impact_speed, found 0"),
+        ("newton_impulse, bodies: [ball]", "expected bodies: [A, B] of newton_impulse, found 1"),
+        ("slop, bodies: [ball]", "expected no bodies of slop, found 1"),
+        ("weight", "weight is of bodies, and none is named; write bodies"),
+        (
+            "drop_impulse, bodies: [floor, ball]",
+            'bodies of drop_impulse: "ball" is a sphere, expected the name of a plane',
+        ),
+    ],
+)
+def test_a_form_is_refused_other_bodies_than_it_is_of(form: str, sentence: str) -> None:
+    (found,) = refusals(with_measure(f"over: {{form: {form}}}").replace("§", ""))
+    assert found.endswith(sentence)
+
+
+def test_every_form_but_one_says_what_its_bodies_are() -> None:
+    assert {*FORMS} - {*BODIES_OF} == {"weight"}
