@@ -20,7 +20,7 @@ from lavendersim.garbage import uncollected
 
 from . import kernel_store
 from .compile_options import OPTIONS
-from .identity import IN_VECTORS, SEPARATE
+from .identity import SEPARATE
 from .spec import Spec
 
 Kernel: Any = None
@@ -73,15 +73,16 @@ def call(kernel: Any, *arguments: Any) -> Any:
 ROUND = frozenset({"sphere_plane", "sphere_sphere"})
 
 
-def separate(kernel: Any, spec: Spec, vectors: bool = False) -> Any:
+def separate(kernel: Any, spec: Spec, how: int = SEPARATE) -> Any:
     """Return a kernel that is optimised with what it calls and without its callers.
 
     For what is large, is called a few times a step and is the same in many plans (`separate_code`).
-    vectors: its loops are made loops of vectors (`optimisation`), to the same bits.
+    how: `IN_VECTORS`, its loops are made loops of vectors, or `SELDOM`, less is merged into it
+    (`optimisation`); to the same bits.
     """
-    alone = vectors or not ROUND.issuperset(spec.shape_pairs)
+    alone = how != SEPARATE or not ROUND.issuperset(spec.shape_pairs)
     if Kernel is not None and isinstance(kernel, Kernel) and alone:
-        kernel.separate = IN_VECTORS if vectors else SEPARATE
+        kernel.separate = how
     return kernel
 
 

@@ -10,6 +10,7 @@ import inspect
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from importlib import import_module
 from typing import Any
 
 from numba.core import errors, event, interpreter, ir, typeinfer
@@ -134,6 +135,21 @@ def shortened() -> Iterator[None]:
         _events.start_event, _events.end_event = begun, ended
         if scheme:
             scheme._markup = coloured
+
+
+@contextmanager
+def without_algebra() -> Iterator[None]:
+    """Let numba learn its functions without a look for SciPy's, which takes longer than the rest.
+
+    No kernel multiplies matrices; numba looks again where code of others does.
+    """
+    linalg = import_module("numba.np.linalg")
+    looked: Any = getattr(linalg, "ensure_blas", None)
+    linalg.ensure_blas = _nothing  # type: ignore[attr-defined]
+    try:
+        yield
+    finally:
+        linalg.ensure_blas = looked  # type: ignore[attr-defined]
 
 
 # Calls of Python that may be inside of each other while kernels are compiled. A part is compiled

@@ -57,8 +57,9 @@ def identity(kernel: Any) -> Identity:
     return known
 
 
-# A part is optimised without its callers, or so that its loops are loops of vectors, too.
-SEPARATE, IN_VECTORS = 1, 2
+# A part is optimised without its callers, or so that its loops are loops of vectors, too, or as
+# what is seldom called: with less merged into it.
+SEPARATE, IN_VECTORS, SELDOM = 1, 2, 3
 
 
 def how_separate(kernel: Any) -> int:

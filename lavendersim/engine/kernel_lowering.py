@@ -21,7 +21,7 @@ from . import field_places
 from .compile_options import OPTIONS
 from .field_places import FIELDS
 from .kernel_expressions import INDICES, WORD, ShortExpressions
-from .memory_references import for_python
+from .python_door import for_python
 from .range_loops import RANGE
 
 # Constants of these types are never read: what they stand for is known by their type.

@@ -10,14 +10,12 @@ in each kernel that is called: half of all instructions of a new plan, and most 
 
 from __future__ import annotations
 
-from copy import copy
 from typing import Any
 
 from llvmlite.ir import Constant, IntType, Undefined
-from numba.core import cgutils, types
+from numba.core import types
 from numba.core.datamodel.manager import DataModelManager
 from numba.core.datamodel.models import ArrayModel, PrimitiveModel
-from numba.core.datamodel.packer import ArgPacker
 from numba.core.datamodel.registry import default_manager
 
 from .field_places import composed_name
@@ -107,35 +105,11 @@ class _References(DataModelManager):
 REFERENCES = _References(default_manager._handlers)
 
 
-class _Door(ArgPacker):
-    """Arguments that come from Python: memory is put down for the kernel that is called."""
-
-    def __init__(self, kinds: Any) -> None:
-        super().__init__(REFERENCES, kinds)
-
-    def as_arguments(self, builder: Any, values: Any) -> Any:
-        """Return what the kernel is handed."""
-        put = [
-            builder.bitcast(cgutils.alloca_once_value(builder, value), BYTES)
-            if is_memory(kind)
-            else value
-            for kind, value in zip(self._fe_args, values, strict=True)
-        ]
-        return super().as_arguments(builder, put)
-
-
-def for_python(context: Any) -> Any:
-    """Return the context in which what Python calls is made: its values are numba's own."""
-    context = copy(context)
-    context.data_model_manager, context.get_arg_packer = default_manager, _Door
-    return context
-
-
 def item(builder: Any, kind: Any, memory: Any, index: int) -> Any:
     """Return one item of memory of a type: an array, or where the memory within lies."""
-    found, begins = kind[index], sum(_words(each) for each in list(kind)[:index])
+    found, begins = kind[index], sum(words(each) for each in list(kind)[:index])
     if is_memory(found):
-        return _moved(builder, memory, begins)
+        return moved(builder, memory, begins)
     model = REFERENCES[found]
     if not are_rows(found):
         return _constant(builder, memory, begins, model.get_value_type())
@@ -144,22 +118,23 @@ def item(builder: Any, kind: Any, memory: Any, index: int) -> Any:
     return model.array(builder, data, _constant(builder, memory, count, WORD))
 
 
-def _words(kind: Any) -> int:
+def words(kind: Any) -> int:
     """Return how long memory is, in numbers and pointers, which are of one size."""
     items: Any = kind
     if isinstance(kind, types.BaseTuple):
-        return sum(_words(each) for each in items)
+        return sum(words(each) for each in items)
     return len(default_manager[kind]._fields) + 2 * (int(kind.ndim) - 1)
 
 
-def _moved(builder: Any, memory: Any, words: int) -> Any:
-    offset = words * WORD.width // 8
-    return builder.gep(memory, (Constant(WORD, offset),), inbounds=True) if words else memory
+def moved(builder: Any, memory: Any, count: int) -> Any:
+    """Return the place so many numbers and pointers behind one of memory."""
+    offset = count * WORD.width // 8
+    return builder.gep(memory, (Constant(WORD, offset),), inbounds=True) if count else memory
 
 
 def _constant(builder: Any, memory: Any, words: int, kind: Any) -> Any:
     """Return what lies at a place that no kernel writes to: it can be read when it is needed."""
-    at = pointing_to(builder, _moved(builder, memory, words), kind)
+    at = pointing_to(builder, moved(builder, memory, words), kind)
     value = builder.load(at)
     value.set_metadata("invariant.load", builder.module.add_metadata([]))
     return value

@@ -24,15 +24,19 @@ LEVEL: Final = 1
 # a step with 60, 6.0 with 200, and a pile of balls 3 % less with 260 than with 200; from 320 on
 # modules take twice the time, for nothing.
 SHORT: Final = 260
+SELDOM_SHORT: Final = 60  # of what is seldom called: half as long, and compiled in half the time
 _SYMBOL = r'@("[^"]*"|[-\w.$]+)\('
 _CALL = re.compile(r"call [^@\n]*" + _SYMBOL)
 _FUNCTION = re.compile(r"^define [^@\n]*" + _SYMBOL + r".*?\n(.*?)^}", re.MULTILINE | re.DOTALL)
 
 
-def optimise(module: Any, parts: set[str], codegen: Any, *, vectors: bool = False) -> None:
+def optimise(
+    module: Any, parts: set[str], codegen: Any, *, short: int = SHORT, vectors: bool = False
+) -> None:
     """Optimise a module once, with parts of these symbols in it.
 
-    vectors: its loops are made loops of vectors, where LLVM can.
+    short: lines of what is merged wherever it is called; vectors: its loops are made loops of
+    vectors, where LLVM can.
 
     Parts are called from here alone. Numba would optimise twice, so that counts of references meet
     in one function; kernels count none.
@@ -51,7 +55,7 @@ def optimise(module: Any, parts: set[str], codegen: Any, *, vectors: bool = Fals
         return
     calls, lengths = counted(str(module))
     for function in inner:
-        if calls[function.name] == 1 or lengths[function.name] < SHORT:
+        if calls[function.name] == 1 or lengths[function.name] < short:
             function.add_function_attribute("alwaysinline")
     builder = codegen._pass_builder(opt=level)
     merging = create_new_module_pass_manager()

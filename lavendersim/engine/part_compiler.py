@@ -32,7 +32,7 @@ from numba.core.typing.templates import make_concrete_template, signature
 
 from lavendersim.garbage import collect_recent
 
-from .compiler_shortcuts import nested, packer_of, shortened
+from .compiler_shortcuts import nested, packer_of, shortened, without_algebra
 from .field_places import composed_in, places_in
 from .kernel_lowering import KernelLowering, is_direct, names_places
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of
@@ -135,7 +135,7 @@ class KernelObject(_Linking):
         defined = "".join(
             f'define void @"{function.name}"() {{\n  unreachable\n}}\n'
             for function in self.get_defined_functions()
-            if function.linkage != Linkage.internal
+            if function.linkage not in (Linkage.internal, Linkage.private)
         )
         return name, kind, (code, parse_assembly(defined).as_bitcode())
 
@@ -290,8 +290,9 @@ class ObjectCompiler(_KernelCompiler):
     @staticmethod
     def learn(typing, target):
         """Take it. Code that is loaded needs none of it, which takes a quarter of a second."""
-        typing.refresh()
-        target.refresh()
+        with without_algebra():
+            typing.refresh()
+            target.refresh()
 
     def code(self, codegen, flags, args):
         """Return a library that links all that it calls."""

@@ -27,9 +27,9 @@ from llvmlite.binding import (
 )
 
 from .field_places import PREFIX, definitions, digest
-from .identity import IN_VECTORS
+from .identity import IN_VECTORS, SELDOM
 from .kernel_parts import STORE, KernelPart, merged_into, separate_in, with_called
-from .optimisation import optimise
+from .optimisation import SELDOM_SHORT, SHORT, optimise
 
 # Behind the symbol of a part, with digits of the places of fields: the symbol of its object.
 ENTRY = ".separate."
@@ -107,7 +107,9 @@ def _compiled(
     module = parse_bitcode(part.bitcode)
     module.name, module.data_layout = part.symbol, codegen._data_layout
     merged = merge(module, part.called, records, codegen)
-    optimise(module, merged - {part.symbol}, codegen, vectors=part.separate == IN_VECTORS)
+    short = SELDOM_SHORT if part.separate == SELDOM else SHORT
+    vectors = part.separate == IN_VECTORS
+    optimise(module, merged - {part.symbol}, codegen, short=short, vectors=vectors)
     function = module.get_function(part.symbol)
     names = _argument_names(function)
     body = str(function).split("{", 1)[1]

@@ -8,7 +8,7 @@ from numba.core import config
 from numba.core.registry import cpu_target
 
 from lavendersim.engine.compile import Kernel
-from lavendersim.engine.optimisation import SHORT, counted, optimise
+from lavendersim.engine.optimisation import SELDOM_SHORT, SHORT, counted, optimise
 
 pytestmark = pytest.mark.skipif(Kernel is None, reason="this numba compiles kernels whole")
 
@@ -20,10 +20,10 @@ def function(name: str, *, lines: int = 0, calls: tuple[str, ...] = ()) -> str:
     return "\n".join([f'define void @"{name}"(ptr %p) {{', *body, "  ret void", "}", ""])
 
 
-def left(text: str, parts: set[str]) -> set[str]:
+def left(text: str, parts: set[str], short: int = SHORT) -> set[str]:
     """Return the functions that a module of this text has when it is optimised."""
     module = parse_assembly(text)
-    optimise(module, parts, cpu_target.target_context.codegen())
+    optimise(module, parts, cpu_target.target_context.codegen(), short=short)
     module.verify()
     return {each.name for each in module.functions if not each.is_declaration}
 
@@ -51,6 +51,11 @@ def test_what_is_called_once_is_merged_whatever_its_length():
 def test_what_is_called_twice_is_merged_where_it_is_short(lines: int, merged: bool):
     whole = function("whole", calls=("part", "part")) + function("part", lines=lines)
     assert left(whole, {"part"}) == ({"whole"} if merged else {"whole", "part"})
+
+
+def test_into_what_is_seldom_called_less_is_merged():
+    whole = function("whole", calls=("part", "part")) + function("part", lines=SHORT // 2)
+    assert left(whole, {"part"}, SELDOM_SHORT) == {"whole", "part"}
 
 
 SUM = """define void @whole(ptr noalias %a, ptr noalias %b, i64 %n) {

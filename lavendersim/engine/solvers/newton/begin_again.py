@@ -14,6 +14,7 @@ from math import inf
 from typing import Any
 
 from ...compile import kernel, separate
+from ...identity import SELDOM
 from ...residual import make_residual
 from ...row_terms import row_terms
 from ...spec import Spec
@@ -155,4 +156,4 @@ def make_begin_again(spec: Spec) -> Any:
             set_impulse(contacts[c], velocities, best[BEST], best[BEST + 1], best[BEST + 2])
         return made
 
-    return separate(kernel(begin_again, spec), spec)
+    return separate(kernel(begin_again, spec), spec, SELDOM)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ...compile import inner, kernel, separate
+from ...identity import IN_VECTORS
 from ...spec import Spec
 from .envelope import DOF
 from .envelope import factorise as factorise_envelope
@@ -140,7 +141,7 @@ def make_factorise(spec: Spec) -> Any:
     """Return `kernel(size, workspace) -> whether` the matrix, L D L^T now, is positive definite."""
     if not eliminates(spec):
         return factorise_envelope
-    by_panels = separate(kernel(factorise_panels.py_func, spec), spec, vectors=True)
+    by_panels = separate(kernel(factorise_panels.py_func, spec), spec, IN_VECTORS)
 
     def factorise(size, workspace):
         if workspace.elimination.nodes.outcome[CHOSEN] == 1:
@@ -168,7 +169,7 @@ def make_factorise_lu(spec: Spec) -> Any:
     """Return `kernel(size, workspace) -> whether` there is a factor L U, which it is now."""
     if not eliminates(spec):
         return factorise_lu_envelope
-    by_panels = separate(kernel(factorise_panels.py_func, spec), spec, vectors=True)
+    by_panels = separate(kernel(factorise_panels.py_func, spec), spec, IN_VECTORS)
 
     def factorise_lu(size, workspace):
         if workspace.elimination.nodes.outcome[CHOSEN] == 1:
