@@ -130,20 +130,16 @@ def plan_in_log(plan: Plan) -> PlanInLog:
     absent = {
         topic: f"{plan.decisions[effect.name].reason} (plan: {effect.name} off)"
         for effect in EFFECTS
-        if not plan.spec.has(effect.name)
-        for topic in effect.channels or ()
+        for topic in (() if plan.spec.has(effect.name) else effect.channels or ())
     }
     return PlanInLog(metadata, absent)
 
 
 def metadata_of(job: CellJob, in_log: PlanInLog) -> dict[str, dict[str, str]]:
     """Return the log's metadata about the engine that made it."""
-    engine = {
-        "source": source_hash(),
-        "plan": job.plan.spec.digest(),
-        "solver": job.plan.spec.solver,
-        "seed": job.seeds,
-    }
+    spec = job.plan.spec
+    engine = {"source": source_hash(), "plan": spec.digest(), "solver": spec.solver}
+    engine["seed"] = job.seeds
     return {"versions": versions(), "engine": engine, **in_log.metadata}
 
 
