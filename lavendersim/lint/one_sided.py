@@ -23,7 +23,7 @@ MOST_NAMES: Final = 3
 def one_sided(cell: Cell) -> Iterator[Defect]:
     """Yield a defect at each coefficient that some body it may touch makes 0 by leaving it out."""
     tree = cell.tree
-    surfaces = {name: _surface(tree, body) for name, body in described(tree)}
+    surfaces = {name: surface_of(tree, body) for name, body in described(tree)}
     named = {name: body.get("surface").text for name, body in described(tree)}
     moves = {name: immovable(body, prescribed=True) is None for name, body in described(tree)}
     for key in MEANS:
@@ -60,7 +60,8 @@ def _written(tree: Node, key: str) -> set[frozenset[str | None]]:
     return {frozenset(between(pair)) for pair in pairs if pair.get(key).number is not None}
 
 
-def _surface(tree: Node, body: Node) -> Node:
+def surface_of(tree: Node, body: Node) -> Node:
+    """Return the surface that a body has, its own or one by name."""
     surface = body.get("surface")
     return surface if surface.text is None else tree.get("scene", "surfaces", surface.text)
 

@@ -8,12 +8,18 @@ from typing import Final
 
 from lavendersim.errors import ConfigError, Defect, SuspiciousScene
 from lavendersim.experiment import Cell, Experiment
+from lavendersim.lint.captured_ahead import captured_ahead
 from lavendersim.lint.crossing import crossing
 from lavendersim.lint.one_sided import one_sided
 from lavendersim.lint.overlaps import overlaps
 from lavendersim.lint.unused import unclaimed, unused_constants, unused_shapes, unused_surfaces
 
-OF_CELLS: Final[tuple[Callable[[Cell], Iterator[Defect]], ...]] = (one_sided, overlaps, crossing)
+OF_CELLS: Final[tuple[Callable[[Cell], Iterator[Defect]], ...]] = (
+    one_sided,
+    overlaps,
+    crossing,
+    captured_ahead,
+)
 OF_FILES: Final[tuple[Callable[[Experiment], Iterator[Defect]], ...]] = (
     unclaimed,
     unused_surfaces,
