@@ -17,6 +17,7 @@ from .approach import (
     NEVER,
     OVERLAP,
     ahead,
+    gained,
     make_change_ahead,
     make_forced,
     make_gap_acceleration,
@@ -232,9 +233,10 @@ def make_stays_apart(spec: Spec) -> Any:
 
     By the rate of the gap alone, where a pair has no feature without a row:
         phi(t) >= phi + v t - (|a| + r) t^2/2,
-    a: of the bodies to each other, by forces; r: |w|^2 h of an end of a capsule, which is slender
-    and goes round its momentum no faster than |w|. The distance of balls curves upwards. None
-    where no pair is of them.
+    a: of the bodies to each other, as reckoned or by forces alone, whichever is more; r: |w|^2 h of
+    an end of a capsule, which is slender and goes round its momentum no faster than |w|: torques
+    are in no reckoning of meetings. The distance of balls curves upwards. None where no pair is of
+    them.
     """
     kinds = tuple(SHAPE_PAIRS[name].kind for name in spec.shape_pairs if name in ALONE)
     if not kinds:
@@ -255,7 +257,9 @@ def make_stays_apart(spec: Spec) -> Any:
         if one.shape == PLANE:
             if ma.wx != 0.0 or ma.wy != 0.0 or ma.wz != 0.0:
                 return False
+        # What is reckoned is of the part before: in the first one of a force it is 0.
         change = 0.5 * length(minus(ahead(mb), ahead(ma)))
+        change = max(change, 0.5 * (length(gained(ma)) + length(gained(mb))))
         if other.shape == CAPSULE:
             if other.inv_ix != other.inv_iy or other.inv_iz < other.inv_ix:
                 return False

@@ -6,9 +6,11 @@ from math import sqrt
 from typing import Any
 
 from .approach import gained
+from .collide.nearest_image import place_beside
 from .collide.records import UNBOUNDED
 from .collide.shapes import shapes_in
 from .compile import kernel
+from .effects import has_hook
 from .midpoint_rows import SAME
 from .records import BOX, PLANE, SPHERE
 from .rotation import is_round
@@ -32,7 +34,8 @@ def make_stays_flat(spec: Spec) -> Any:
         return None
     boxes = BOX in kinds
     kinematic, uneven = step_terms(spec).kinematic, step_terms(spec).uneven
-    sprung = step_terms(spec).sprung
+    sprung, carries = step_terms(spec).sprung, has_hook(spec, "surface_velocity")
+    beside_a: Any = place_beside(spec)
 
     def stays_flat(a, b, m, dt):
         if b.shape != SPHERE or a.inv_m != 0.0:
@@ -46,9 +49,12 @@ def make_stays_flat(spec: Spec) -> Any:
         if sprung:
             if b.sprung > 0:
                 return False
+        if carries:  # its surface's velocity turns with it
+            if b.sx != 0.0 or b.sy != 0.0 or b.sz != 0.0:
+                return False
         if boxes:
             if a.shape == BOX:
-                c = into_body(a, minus(b, a))
+                c = into_body(a, minus(beside_a(a, b), a))
                 v, dv = into_body(a, Vec3(m.vx, m.vy, m.vz)), into_body(a, gained(m))
                 beside = 0
                 for at, half, way in (

@@ -121,3 +121,13 @@ def test_only_where_a_row_may_close_is_the_pair_followed(rng: np.random.Generato
         ball.motion["wx"] = 1e3  # may bring any point nearer
         follow(rows[0], rows[1], 1, rows[2], rows[3], STEP)
         assert ball.contact["due"][0] == due
+
+
+def test_a_force_that_is_not_reckoned_yet_closes_gaps_too(rng) -> None:
+    """In the first step under gravity: 1e-5 m + 0.2 mm - 2 mm after 20 ms."""
+    meeting = Meeting("sphere_plane", rng)
+    put_vector(meeting.motion[1], "ahead_", np.zeros(3))
+    meeting.contact["phi"], meeting.contact["rate"] = 1e-5, 0.01
+    assert meeting.stays()
+    put_vector(meeting.motion[1], "dv", np.array([0.0, 0.0, -9.81 * STEP]))
+    assert not meeting.stays()

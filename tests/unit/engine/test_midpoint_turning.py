@@ -78,6 +78,8 @@ class Rolling:
         bodies["kinematic"], bodies["sprung"] = 0, 0
         for name in ("x", "y", "z", "r01", "r02", "r10", "r12", "r20", "r21"):
             bodies[name] = 0.0
+        for name in ("sx", "sy", "sz"):
+            bodies[name][1] = 0.0
         for name in ("r00", "r11", "r22"):
             bodies[name] = 1.0
         for axis in "xyz":
@@ -106,7 +108,8 @@ def test_a_ball_on_a_plane_or_over_a_face_turns_no_row() -> None:
 
 
 CHANGED = {
-    "body": {"kinematic": (0, 1), "inv_m": (0, 1.0), "inv_iz": (1, 3.5), "sprung": (1, 1)},
+    "body": {"kinematic": (0, 1), "inv_m": (0, 1.0), "inv_iz": (1, 3.5), "sprung": (1, 1),
+             "sz": (1, 1.0)},
     "contact": {
         "spring_compliance": 1e-4, "yield_k": 1.0, "stretched": 1, "span": 1.0, "bilateral": 1,
         "patch_x": 1e-3, "tangential_y": 1e-3, "surface_2": 1e-3, "begin_n": 1e-8,
