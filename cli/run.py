@@ -302,6 +302,10 @@ def share_sweeps(threads: int | None) -> None:
     """Let steps of this process, and of those it begins, have so many threads; None: as before."""
     if threads is not None:
         os.environ["LAVENDER_THREADS"] = str(threads)
+    if "LAVENDER_THREADS" in os.environ:
+        from lavendersim.runner.threads import threads_asked
+
+        threads_asked()  # refused before anything is read
 
 
 def print_finished(finished: Any, refined: Any = None) -> None:

@@ -10,6 +10,7 @@ only together is flushed together: `flush=False` for each, `flush_tree` before w
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import itertools
 import os
 import sys
@@ -23,14 +24,21 @@ from typing import Final
 FEW: Final = 32
 AT_ONCE: Final = 16
 BUFFER: Final = 1024 * 1024  # [B] of a file that is written in pieces
+DIGITS: Final = 8  # of the digest of a name that is cut
 MOST_BYTES: Final = 150  # of a name in a path, of 255: a time and a digest stand beside it
 _number = itertools.count()
 
 
 def path_name(name: str, most: int = MOST_BYTES) -> str:
-    """Return a name with `_` for what a terminal would obey, cut to so many bytes of UTF-8."""
+    """Return a name with `_` for what a terminal would obey, of at most so many bytes of UTF-8.
+
+    A longer one is cut and ends with a digest of the whole, by which it is another's no more.
+    """
     shown = "".join(one if one.isprintable() else "_" for one in name)
-    return shown.encode()[:most].decode("utf-8", "ignore")
+    if len(shown.encode()) <= most:
+        return shown
+    digest = hashlib.sha256(name.encode("utf-8", "surrogateescape")).hexdigest()[:DIGITS]
+    return f"{shown.encode()[: most - DIGITS - 1].decode('utf-8', 'ignore')}-{digest}"
 
 
 @contextlib.contextmanager

@@ -19,7 +19,8 @@ from .solvers.packed.lanes import primitive
 
 _WORD: Final = ir.IntType(64)
 _BYTES: Final = 8
-# Looks at a word before a thread that waits offers its processor to others; some 50 us.
+# Looks at a word before a thread that waits offers its processor to others: some 50 us where the
+# processor pauses between two, less elsewhere.
 SPINS: Final = 2000
 _X86: Final = platform.machine().lower() in {"x86_64", "amd64"}
 # Whether the system has what threads that wait call.
@@ -98,8 +99,9 @@ def _give_way(typing):
     """Offer the processor to another thread."""
 
     def emit(context, builder, sig, args):
-        kind = ir.FunctionType(ir.IntType(32), [])
-        builder.call(cgutils.get_or_insert_function(builder.module, kind, "sched_yield"), [])
+        if CAN_WAIT:  # else there is no team, and the symbol is none of the system
+            kind = ir.FunctionType(ir.IntType(32), [])
+            builder.call(cgutils.get_or_insert_function(builder.module, kind, "sched_yield"), [])
         return context.get_dummy_value()
 
     return signature(types.void), emit

@@ -28,7 +28,7 @@ from .collide.mesh_tables import MeshTables
 from .compile import compiling
 from .effects import effects_of, has_hook, sleeping
 from .records import CONTACTS_FULL, PAIRS_FULL, ROWS_FULL, WOKEN
-from .solvers.packed.members import packed_of, serve_for
+from .solvers.packed.members import WORTH_SHARING, packed_of, serve_for
 from .spec import Spec
 from .step import advance_for
 from .team import with_team
@@ -142,7 +142,7 @@ class Engine:
     @property
     def machine_code(self) -> int:
         """Where the machine code of its step lies; 0: it is not known, or steps need room first."""
-        alone = self._records_sweeps or self._threads > 1
+        alone = self._records_sweeps or self._has_team()
         return 0 if alone else _codes.get(self.kind, 0)
 
     def array_objects(self) -> np.ndarray:
@@ -162,8 +162,14 @@ class Engine:
 
     @threads.setter
     def threads(self, asked: int) -> None:
-        """Ask for so many: one where this engine has nothing that they would share."""
+        """Ask for so many, whose kernel is compiled; one where there is nothing to share."""
         self._threads = 1 if packed_of(self.workspace.solver) is None else asked
+        if self._threads > 1:
+            serve_for(self.spec)
+
+    def _has_team(self) -> bool:
+        # By the last step: a call is brief, and its contacts may become more.
+        return self._threads > 1 and int(self.counters["contacts"][0]) >= WORTH_SHARING
 
     @property
     def bodies(self) -> np.ndarray:
@@ -258,7 +264,7 @@ class Engine:
     def _call(self, steps: int) -> int:
         arguments = self.state, self.workspace, self.log, self.parameters, self.counters, steps
         if self._entry is not None:
-            packed = packed_of(self.workspace.solver) if self._threads > 1 else None
+            packed = packed_of(self.workspace.solver) if self._has_team() else None
             if packed is None:
                 return int(self._entry(*arguments))
             serve, words = partial(serve_for(self.spec), packed), packed.team.words

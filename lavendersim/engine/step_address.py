@@ -1,4 +1,4 @@
-"""What kernels do by addresses alone: call the step of any plan, read a word, read the clock.
+"""What kernels do by addresses alone: call the step of any plan, read a word.
 
 Every plan's step has one form to the machine, whatever its records (`memory_references`): memory is
 an address, rows are an address and a count.
@@ -12,22 +12,20 @@ exception is reported by a result that is not zero.
 
 from __future__ import annotations
 
-import time
 from typing import Any, Final
 
-from llvmlite.ir import ArrayType, Constant, FunctionType, IntType
+from llvmlite.ir import Constant, FunctionType, IntType
 from numba.core import cgutils, types
-from numba.extending import intrinsic
 
 from .memory_references import BYTES, WORD
 from .records import RAISED
+from .solvers.packed.lanes import primitive
 
 _int64: Any = types.int64
 _STATUS: Final = IntType(32)
-CLOCK: Final = getattr(time, "CLOCK_MONOTONIC", 0)  # of POSIX: it never goes back
 
 
-@intrinsic
+@primitive
 def step_at(typingctx, code, parts, params, counters, steps):
     """Return what the step whose machine code lies at `code` returns; RAISED where it raised.
 
@@ -58,7 +56,7 @@ def step_at(typingctx, code, parts, params, counters, steps):
     return _int64(_int64, types.UniTuple(_int64, 3), _int64, _int64, _int64), call
 
 
-@intrinsic
+@primitive
 def word_at(typingctx, address):
     """Return the word at an address."""
 
@@ -66,18 +64,3 @@ def word_at(typingctx, address):
         return builder.load(builder.inttoptr(arguments[0], WORD.as_pointer()))
 
     return _int64(_int64), read
-
-
-@intrinsic
-def nanoseconds(typingctx):
-    """Return the time of a clock that only goes on [ns]."""
-
-    def read(context, builder, signature, arguments):
-        kind = FunctionType(_STATUS, [_STATUS, BYTES])
-        function = cgutils.get_or_insert_function(builder.module, kind, "clock_gettime")
-        place = cgutils.alloca_once(builder, ArrayType(WORD, 2))
-        builder.call(function, [Constant(_STATUS, CLOCK), builder.bitcast(place, BYTES)])
-        seconds, rest = (builder.extract_value(builder.load(place), k) for k in range(2))
-        return builder.add(builder.mul(seconds, Constant(WORD, 10**9)), rest)
-
-    return _int64(), read

@@ -175,11 +175,14 @@ def with_team(
 
     serve: called by each of them; returns when the words say LEAVE.
     """
-    words[FORK] = (words[FORK] // OFTEN + 1) * OFTEN + IDLE
+    words[FORK], words[MEMBERS] = (words[FORK] // OFTEN + 1) * OFTEN + IDLE, 0
     others = [Thread(target=serve, daemon=True) for _ in range(min(threads, MOST) - 1)]
     try:
         for other in others:
-            other.start()
+            try:
+                other.start()
+            except RuntimeError:  # the system gives no more: fewer share
+                break
         return step()
     finally:
         words[FORK] = (words[FORK] // OFTEN + 1) * OFTEN + LEAVE

@@ -25,6 +25,7 @@ import numpy as np
 from .compile import Kernel, compiling, inner
 from .engine import Engine
 from .kernel_cache import cached
+from .kernel_clock import nanoseconds
 from .memory import arrays_of
 from .records import CONTACTS_FULL, PAIRS_FULL, RAISED, ROWS_FULL, RUNNING, WOKEN
 from .spec import Spec
@@ -148,12 +149,12 @@ def advance_engines() -> Any:
 
 
 def _make_advance_engines(spec: Spec) -> Any:
-    from .step_address import nanoseconds, step_at, word_at  # late, as above
+    from .step_address import step_at, word_at  # late, as above
 
     def advance_engines(where, objects, form, memory, call, block):
         code, place, begins, within = where
         arrays, words = len(form) - 2, memory.shape[1]
-        begin: Any = nanoseconds()  # type: ignore[call-arg]
+        begin: Any = nanoseconds()
         now = begin
         for w in range(block[0], block[1]):
             if now - begin > within:

@@ -24,6 +24,10 @@ from lavendersim.measures.elliptic import integral, jacobi, quarter_period
 from lavendersim.measures.interfaces import Floats
 
 
+# Rates beyond all numbers are infinite, and what turns by them is no number: it is told by that.
+_beyond_numbers = np.errstate(over="ignore", invalid="ignore")
+
+
 @dataclass(frozen=True)
 class FreeRotation:
     """The exact motion of a torque-free body in its own principal axes."""
@@ -34,6 +38,7 @@ class FreeRotation:
     phase: float  # tau at time 0
     m1: float  # complementary parameter 1 - m
 
+    @_beyond_numbers
     def angular_velocity(self, time: Floats) -> Floats:
         """Return omega in body axes [rad/s] (n, 3) at these times [s]."""
         sn, cn, dn = jacobi(self.rate * np.asarray(time) + self.phase, self.m1)
@@ -58,6 +63,7 @@ class FreeRotation:
         return self.order[1]
 
 
+@_beyond_numbers
 def free_rotation(moments: Floats, omega: Floats) -> FreeRotation:
     """Return the motion that starts with omega in body axes [rad/s], all moments above 0."""
     exponent = math.frexp(float(np.max(np.abs(omega))))[1]

@@ -14,6 +14,7 @@ from lavendersim.cell import (
     Capsule,
     CellHull,
     CellMesh,
+    Cone,
     Convex,
     Cylinder,
     Ellipsoid,
@@ -91,6 +92,8 @@ def _polyhedron(shape: Convex) -> Polyhedron:
     """Return a hull as it is, any other shape as the hull of its corners."""
     if isinstance(shape, CellHull):
         return Polyhedron(shape.points, shape.faces)
+    if isinstance(shape, Cone):  # which may be too flat for a search
+        return Polyhedron(shape.corners(), shape.faces())
     return convex_hull(shape.corners())
 
 

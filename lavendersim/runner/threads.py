@@ -14,9 +14,9 @@ VARIABLE: Final = "LAVENDER_THREADS"  # set by `lavender run --threads`
 def threads_asked() -> int:
     """Return how many threads the environment asks for, one by default.
 
-    Raises UsageError where it is no whole number from 1 on.
+    Raises UsageError where it is none that a team may have.
     """
-    asked = os.environ.get(VARIABLE, "1")
-    if not asked.isdecimal() or not int(asked):
+    asked = os.environ.get(VARIABLE) or "1"
+    if asked not in map(str, range(1, MOST + 1)):
         raise UsageError(f"{VARIABLE}: expected a whole number from 1 to {MOST}, found {asked!r}")
-    return min(int(asked), MOST)
+    return int(asked)

@@ -13,8 +13,8 @@ from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.composition import composition_of, kept
 from lavendersim.engine.effects import EFFECTS, Effect
 from lavendersim.engine.solvers.packed.lanes import WIDTH
-from lavendersim.engine.solvers.packed.members import shares_sweeps
-from lavendersim.engine.solvers.packed.team_sweeps import WORTH_IT
+from lavendersim.engine.solvers.packed.members import WORTH_SHARING, shares_sweeps
+from lavendersim.engine.solvers.packed.team_sweeps import FEWEST_GROUPS
 from lavendersim.engine.spec import Spec
 
 from .laws import needs
@@ -104,8 +104,8 @@ def _explained(plan: Plan, others: Iterable[Plan]) -> Explanation:
 
 def _threads(plan: Plan) -> str:
     if shares_sweeps(plan.spec):
-        least = WIDTH * WORTH_IT
-        return f"sweeps are shared where some {least} contacts and more are visited by eight"
+        many, colour = WORTH_SHARING, WIDTH * FEWEST_GROUPS
+        return f"sweeps are shared where colours of {colour} contacts and more hold {many} together"
     if plan.spec.solver != "adaptive":
         return (
             f"nothing is shared: the solver is {plan.spec.solver}, and packs no contacts by eight"

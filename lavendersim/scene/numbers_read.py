@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from lavendersim.cell.shapes.shape import Primitive
 from lavendersim.engine.effects import Facts
 
 # Of a body as predicates see it and of its config; of a scene, what leads to its bodies.
 STARTS: Final = frozenset({"position", "release", "velocity", "speed", "bodies"})
 MASSES: Final = frozenset({"mass", "density", "inertia", "bodies"})
 _CONFIGS: Final = frozenset({"later", "forms"})  # of a body: as events make it
-# Moments whose ratio is nearer to 1 may be rounded to equal ones of another mass.
+# Moments whose ratio is nearer to 1 may be equal with one mass and not with another.
 _APART: Final = 1e-9
 
 
@@ -41,7 +42,7 @@ class NumbersRead:
     def note(self, of: Any, name: str) -> None:
         """Note that an attribute is read."""
         self.starts |= name in STARTS
-        self.masses |= name in MASSES or (name == "round" and _may_be_round(of.config.inertia))
+        self.masses |= name in MASSES or (name == "round" and _depends_on_mass(of.config))
 
 
 class _Watched:
@@ -60,8 +61,13 @@ class _Watched:
         return _Watched(value, self._noted) if name == "config" and value is not None else value
 
 
-def _may_be_round(inertia: tuple[float, float, float] | None) -> bool:
-    """Whether moments that are not equal, times some factor, may be rounded to equal ones."""
-    if inertia is None or inertia[0] == inertia[1] == inertia[2]:
+def _depends_on_mass(config: Any) -> bool:
+    """Whether moments may be equal with one mass and not with another, by round-off."""
+    inertia = config.inertia
+    if inertia is None or max(inertia) - min(inertia) >= _APART * max(inertia):
         return False
-    return max(inertia) - min(inertia) < _APART * max(inertia)
+    if not isinstance(config.shape, Primitive):
+        return True
+    # Of equal numbers each mass makes equal ones.
+    own = config.shape.homogeneous().moments
+    return any(len({*moments}) > 1 for moments in (own, inertia))

@@ -25,6 +25,7 @@ from lavendersim.cell import (
     CellMesh,
     CellShape,
     CellSimple,
+    Cone,
     Cylinder,
     Plane,
     Sphere,
@@ -94,6 +95,8 @@ def _solid(shape: CellSimple) -> Iterator[Visual]:
                 yield Visual(_sphere(shape.radius), place, np.eye(3))
         case CellHull():
             yield from _edges(Polyhedron(shape.points, shape.faces))
+        case Cone():
+            yield from _edges(Polyhedron(shape.corners(), shape.faces()))
         case _:
             yield from _edges(convex_hull(shape.corners()))
 

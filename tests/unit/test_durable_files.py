@@ -124,5 +124,10 @@ def test_what_a_terminal_would_obey_is_a_line(name: str, words: str) -> None:
 
 
 def test_bytes_are_counted_and_characters_stay_whole() -> None:
-    assert path_name("字" * 80) == "字" * (MOST_BYTES // 3)
-    assert path_name("字" * 80, 100) == "字" * 33
+    for most in (MOST_BYTES, 100):
+        name = path_name("字" * 80, most)
+        kept, _, digest = name.rpartition("-")
+        assert kept == "字" * ((most - len(digest) - 1) // 3)
+        assert len(name.encode()) <= most
+        assert path_name("字" * 79, most) != name  # no two cut names are one
+        assert path_name("字" * 80 + "_cost", most) != name

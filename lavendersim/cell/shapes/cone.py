@@ -66,6 +66,12 @@ class Cone(Primitive):
         """Return points of the rim and the apex [m]."""
         return (*circle(self.radius, -self.base), (0.0, 0.0, self.apex))
 
+    def faces(self) -> tuple[tuple[int, ...], ...]:
+        """Return base and side as rows of corners that turn left seen from outside."""
+        apex = len(self.corners()) - 1
+        sides = ((k, (k + 1) % apex, apex) for k in range(apex))
+        return (tuple(reversed(range(apex))), *sides)
+
     def homogeneous(self) -> Homogeneous:
         """Return volume and moments of inertia."""
         square = self.radius * self.radius

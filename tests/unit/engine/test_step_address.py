@@ -1,9 +1,8 @@
-"""Kernels call a step by its address, read words where they lie, and read the clock."""
+"""Kernels call a step by its address, and read words where they lie."""
 
 from __future__ import annotations
 
 import ctypes
-import time
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ if Kernel is None:
     pytest.skip("this numba compiles kernels whole", allow_module_level=True)
 
 from lavendersim.engine.records import RAISED
-from lavendersim.engine.step_address import nanoseconds, step_at, word_at
+from lavendersim.engine.step_address import step_at, word_at
 
 WORD, PLACE = ctypes.c_int64, ctypes.c_void_p
 STEP = ctypes.CFUNCTYPE(
@@ -51,15 +50,3 @@ def test_a_word_is_read_where_it_lies() -> None:
     words = np.array([3, -(2**62), 5])
     with compiling():
         assert [read(words.ctypes.data + 8 * k) for k in range(3)] == words.tolist()
-
-
-def test_the_clock_is_that_of_the_system() -> None:
-    @inner
-    def now():
-        return nanoseconds()
-
-    with compiling():
-        now()
-    before = time.clock_gettime_ns(time.CLOCK_MONOTONIC)
-    between = now()
-    assert before <= between <= time.clock_gettime_ns(time.CLOCK_MONOTONIC)

@@ -131,3 +131,10 @@ def test_the_solution_begins_as_asked_whatever_the_sizes() -> None:
 )
 def test_the_integral_of_what_is_no_number_is_none(phase: float, m1: float) -> None:
     assert math.isnan(integral(phase, m1))
+
+
+def test_rates_beyond_all_numbers_are_told_by_what_is_none() -> None:
+    """Pytest makes errors of numpy's warnings."""
+    motion = free_rotation(np.array([1e-3, 0.5, 1.0]), np.array([1e308] * 3))
+    assert motion.rate == math.inf
+    assert np.isnan(motion.angular_velocity(np.array([1.0]))).all()

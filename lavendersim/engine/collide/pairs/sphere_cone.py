@@ -43,10 +43,11 @@ def make(spec):
             if over_base > 0.0:
                 # The base is nearer than the side to all that is below it.
                 side, rise = max(rho - cone.hx, 0.0), -over_base
-            elif 0.0 < along < length:
-                side, rise = over_side * out_rho, over_side * out_z
-            distance = sqrt(side * side + rise * rise)
-            side, rise = side / distance, rise / distance
+            if over_base <= 0.0 and 0.0 < along < length:
+                distance, side, rise = over_side, out_rho, out_z
+            else:
+                distance = sqrt(side * side + rise * rise)
+                side, rise = side / distance, rise / distance
         phi = distance - sphere.hx
         if phi > margin:
             return 0

@@ -63,9 +63,9 @@ RUN, TOGETHER = 64, 4
 LINE = 8  # numbers of a line of the processor's cache
 # Pieces that a team may be dealt out, at most, for each contact and beside: see `team_sweeps`.
 MOST_PIECES, FEWEST_PIECES = 8, 1024
-# Lines of the state before those of bodies: what nothing moves, which idle lanes have, too, and of
-# each member of a team what it would write there.
-HEAD = 1 + MOST
+# Lines of the state before those of bodies: what nothing moves, which idle lanes have, too, what is
+# written of it, and of each member of a team the same, two lines apart.
+HEAD = 2 + 2 * MOST
 
 # Velocity of a body when the solve begins [m/s], [rad/s], and the lower triangle of L.
 START: Final[list[Field]] = [*VELOCITY, *ANGULAR_VELOCITY]

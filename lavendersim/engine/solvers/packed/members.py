@@ -9,8 +9,12 @@ from ...atomics import CAN_WAIT
 from ...compile import compiling
 from ...kernel_cache import cached
 from ...spec import Spec
+from .lanes import WIDTH
 from .layout import PackedContacts, allocate_packed
-from .team_sweeps import make_serve
+from .team_sweeps import WORTH_IT, make_serve
+
+# Contacts from which on a step may have a sweep that is worth sharing.
+WORTH_SHARING = WIDTH * WORTH_IT
 
 
 def packed_of(workspace: Any) -> PackedContacts | None:

@@ -13,8 +13,8 @@ from typing import Any
 
 from ...atomics import fetch_add, load
 from ...compile import inner, kernel
+from ...kernel_clock import nanoseconds
 from ...spec import Spec
-from ...step_address import nanoseconds
 from ...team import (
     FOLLOW,
     FORK,
@@ -39,8 +39,6 @@ from .lane_memory import STRIDE
 from .lanes import WIDTH
 from .layout import HEAD, RUN
 
-# As types go it has the argument that only the compiler gives it.
-_now: Any = nanoseconds
 # Groups from which on a stage is shared, and those in shared stages from which on a sweep is.
 FEWEST_GROUPS, WORTH_IT = 16, 64
 # Pieces of a shared stage for each member: what one that comes late has not claimed others make.
@@ -105,7 +103,12 @@ def make_share_stages(spec: Spec, visit_groups: Any) -> Any:
     """
 
     def share_stages(packed, member, word):
-        team, stages, size, own = packed.team, packed.stages, size_of(word), (1 + member) * STRIDE
+        team, stages, size, own = (
+            packed.team,
+            packed.stages,
+            size_of(word),
+            2 * (1 + member) * STRIDE,
+        )
         valid, (count, _, _) = arguments(team.words, word)
         if not valid:
             return
@@ -135,7 +138,7 @@ def make_share_runs(spec: Spec, visit_groups: Any) -> Any:
     """
 
     def share_runs(packed, member, word):
-        team, size, own = packed.team, size_of(word), (1 + member) * STRIDE
+        team, size, own = packed.team, size_of(word), 2 * (1 + member) * STRIDE
         valid, (groups, sweeps, behind) = arguments(team.words, word)
         if not valid:
             return
@@ -168,7 +171,7 @@ def make_share_sweep(spec: Spec, visit_groups: Any, task: int) -> Any:
         team, count, word = packed.team, packed.counts[0], 0
         if count == 0:
             return visit_groups(packed, 0, slots // WIDTH, STRIDE)
-        begin = _now()
+        begin = nanoseconds()
         if is_worth_it(team.trials, task):
             word = fork(team, MOST, task, (count, 0, 0))
         if word > 0:
@@ -177,7 +180,7 @@ def make_share_sweep(spec: Spec, visit_groups: Any, task: int) -> Any:
             greatest = greatest_of(team, word, 0)
         else:
             greatest = visit_groups(packed, 0, slots // WIDTH, STRIDE)
-        note_time(team.trials, task, word > 0, _now() - begin)
+        note_time(team.trials, task, word > 0, nanoseconds() - begin)
         return greatest
 
     return kernel(sweep, spec)
@@ -197,7 +200,7 @@ def make_share_following(spec: Spec, visit_groups: Any, alone: Any) -> Any:
         if size < 2:
             alone(packed, slots, sweeps)
             return
-        begin = _now()
+        begin = nanoseconds()
         if is_worth_it(team.trials, FOLLOW):
             behind = _distance(packed.reach[0], size)
             word = fork(team, size, FOLLOW, (groups, sweeps, behind))
@@ -208,7 +211,7 @@ def make_share_following(spec: Spec, visit_groups: Any, alone: Any) -> Any:
                 packed.changes[sweeps - 1 - k] = greatest_of(team, word, k)
         else:
             alone(packed, slots, sweeps)
-        note_time(team.trials, FOLLOW, word > 0, _now() - begin)
+        note_time(team.trials, FOLLOW, word > 0, nanoseconds() - begin)
 
     return kernel(follow, spec)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -48,3 +49,21 @@ duration: 1
 """
     with pytest.raises(LavenderError, match=r"a\.yaml:4:\d+: "):
         load_experiment_text(text, "a.yaml")
+
+
+@pytest.mark.parametrize(("radius", "height"), [(0.3, 0.8), (1.0, 1e-6), (1.0, 1e7)])
+def test_its_faces_turn_left_seen_from_outside_and_close(radius: float, height: float) -> None:
+    """Each edge stands once each way; the volume is that of a pyramid on the rim's polygon."""
+    cone = Cone(kind="cone", radius=radius, height=height)
+    corners, faces = np.array(cone.corners()), cone.faces()
+    edges = [edge for face in faces for edge in zip(face, [*face[1:], face[0]], strict=True)]
+    assert len(set(edges)) == len(edges)
+    assert {(b, a) for a, b in edges} == set(edges)
+    volume = sum(
+        np.linalg.det(corners[[face[0], one, two]]) / 6.0
+        for face in faces
+        for one, two in pairwise(face[1:])
+    )
+    sides = len(corners) - 1
+    base = 0.5 * sides * radius * radius * math.sin(2.0 * math.pi / sides)
+    assert volume == pytest.approx(base * height / 3.0, rel=1e-9)
