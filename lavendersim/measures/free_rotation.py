@@ -23,8 +23,7 @@ import numpy as np
 from lavendersim.measures.elliptic import integral, jacobi, quarter_period
 from lavendersim.measures.interfaces import Floats
 
-
-# Rates beyond all numbers are infinite, and what turns by them is no number: it is told by that.
+# Rates beyond all numbers are infinite, and what turns by them is no number: a measure says so.
 _beyond_numbers = np.errstate(over="ignore", invalid="ignore")
 
 

@@ -133,7 +133,7 @@ def test_the_integral_of_what_is_no_number_is_none(phase: float, m1: float) -> N
     assert math.isnan(integral(phase, m1))
 
 
-def test_rates_beyond_all_numbers_are_told_by_what_is_none() -> None:
+def test_rates_beyond_all_numbers_leave_what_is_none() -> None:
     """Pytest makes errors of numpy's warnings."""
     motion = free_rotation(np.array([1e-3, 0.5, 1.0]), np.array([1e308] * 3))
     assert motion.rate == math.inf
