@@ -40,7 +40,6 @@ SHAPES = {
     "box": "{kind: box, size: [0.2, 0.4, 0.6]}",
     "capsule": "{kind: capsule, radius: 0.1, length: 0.5}",
     "cylinder": "{kind: cylinder, radius: 0.2, length: 0.3}",
-    "cone": "{kind: cone, radius: 0.2, height: 0.5}",
     "ellipsoid": "{kind: ellipsoid, semi_axes: [0.2, 0.4, 0.3]}",
     "hull": "{kind: hull, points: [[0, 0, 0], [0.5, 0, 0], [0, 0.4, 0], [0, 0, 0.9]]}",
     "compound": "{kind: compound, parts: [{shape: {kind: sphere, radius: 0.3}},"

@@ -27,8 +27,9 @@ from .collide.convex.hull_geometry import HullGeometry
 from .collide.mesh_tables import MeshTables
 from .compile import compiling
 from .effects import effects_of, has_hook, sleeping
+from .effects.packed_sweeps import SHARED_SWEEP
 from .records import CONTACTS_FULL, PAIRS_FULL, ROWS_FULL, WOKEN
-from .solvers.packed.members import WORTH_SHARING, packed_of, serve_for
+from .solvers.packed.members import packed_of, serve_for
 from .spec import Spec
 from .step import advance_for
 from .team import with_team
@@ -169,7 +170,7 @@ class Engine:
 
     def _has_team(self) -> bool:
         # By the last step: a call is brief, and its contacts may become more.
-        return self._threads > 1 and int(self.counters["contacts"][0]) >= WORTH_SHARING
+        return self._threads > 1 and int(self.counters["contacts"][0]) >= SHARED_SWEEP
 
     @property
     def bodies(self) -> np.ndarray:

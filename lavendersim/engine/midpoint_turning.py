@@ -73,15 +73,9 @@ def make_stays_flat(spec: Spec) -> Any:
     return kernel(stays_flat, spec)
 
 
-def make_is_plain(spec: Spec) -> Any:
-    """Return `kernel(contact, speed) -> whether` its row at the middle asks what it asks at first.
-
-    Where nothing turns it. speed: of its bodies to each other, of which it may leave round-off.
-    """
-    terms = row_terms(spec)
-    springs, yielding, stretched = terms.elastic, terms.yielding, terms.stretched
-    ropes, bilateral, coupled = terms.taut, terms.bilateral, terms.coupled
-    friction, frictionless, swept = terms.frictional, terms.frictionless, terms.swept
+def _make_asks_the_same(spec: Spec) -> Any:
+    """Return the same kernel of a row's friction."""
+    yielding, stretched = row_terms(spec).yielding, row_terms(spec).stretched
 
     def asks_the_same(contact, speed):
         # Of a row with friction: no surface moves, and none is along the slip of the start, which
@@ -97,7 +91,20 @@ def make_is_plain(spec: Spec) -> Any:
         work += two * (contact.t2x * x + contact.t2y * y + contact.t2z * z)
         return same and work <= ROUND_OFF * speed * (abs(one) + abs(two))
 
-    asks_the_same = kernel(asks_the_same, spec)
+    return kernel(asks_the_same, spec)
+
+
+def make_is_plain(spec: Spec) -> Any:
+    """Return `kernel(contact, speed) -> whether` its row at the middle asks what it asks at first.
+
+    Where nothing turns it. speed: of its bodies to each other, of which it may leave round-off.
+    """
+    terms = row_terms(spec)
+    springs = terms.elastic
+    ropes, bilateral, coupled = terms.taut, terms.bilateral, terms.coupled
+    friction, frictionless, swept = terms.frictional, terms.frictionless, terms.swept
+
+    asks_the_same: Any = _make_asks_the_same(spec) if friction else None
 
     def is_plain(contact, speed):
         plain = contact.lasts == 0 or contact.begin_n <= ROUND_OFF * speed
@@ -130,8 +137,9 @@ def make_is_turning(spec: Spec) -> Any:
     Asked of rows that `begin_slip` has looked at.
     """
     turns, ropes = step_terms(spec).turns, row_terms(spec).taut
-    stays_flat, is_plain = make_stays_flat(spec), make_is_plain(spec)
+    stays_flat = make_stays_flat(spec)
     balls = stays_flat is not None
+    is_plain: Any = make_is_plain(spec) if balls else None
 
     def is_turning(contacts, count, bodies, motion, params):
         for c in range(count):

@@ -12,9 +12,7 @@ from typing import Any, NamedTuple
 from lavendersim.engine.collide import SHAPE_PAIRS
 from lavendersim.engine.composition import composition_of, kept
 from lavendersim.engine.effects import EFFECTS, Effect
-from lavendersim.engine.solvers.packed.lanes import WIDTH
-from lavendersim.engine.solvers.packed.members import WORTH_SHARING, shares_sweeps
-from lavendersim.engine.solvers.packed.team_sweeps import FEWEST_GROUPS
+from lavendersim.engine.effects.packed_sweeps import SHARED_COLOUR, SHARED_SWEEP
 from lavendersim.engine.spec import Spec
 
 from .laws import needs
@@ -103,14 +101,15 @@ def _explained(plan: Plan, others: Iterable[Plan]) -> Explanation:
 
 
 def _threads(plan: Plan) -> str:
-    if shares_sweeps(plan.spec):
-        many, colour = WORTH_SHARING, WIDTH * FEWEST_GROUPS
-        return f"sweeps are shared where colours of {colour} contacts and more hold {many} together"
-    if plan.spec.solver != "adaptive":
-        return (
-            f"nothing is shared: the solver is {plan.spec.solver}, and packs no contacts by eight"
-        )
-    return f"nothing is shared: {_decided(plan, 'packed_sweeps').reason}"
+    solver = plan.spec.solver
+    colours = f"colours of {SHARED_COLOUR} contacts and more hold {SHARED_SWEEP} together"
+    if plan.spec.has("packed_sweeps"):
+        return f"sweeps are shared where {colours}"
+    if solver == "coloured_gauss_seidel":
+        return f"sweeps are shared where contacts are packed by eight and {colours}"
+    if solver == "adaptive":
+        return f"nothing is shared: {_decided(plan, 'packed_sweeps').reason}"
+    return f"nothing is shared: the solver is {solver}, and packs no contacts by eight"
 
 
 def explain_all(plans: Iterable[Plan]) -> list[Explanation]:

@@ -44,7 +44,7 @@ expect:
 def test_logs_are_those_of_one_thread(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(team_sweeps, "FEWEST_GROUPS", 2)
     monkeypatch.setattr(team_sweeps, "WORTH_IT", 8)
-    monkeypatch.setattr(engine, "WORTH_SHARING", 0)  # in the first call, too
+    monkeypatch.setattr(engine, "SHARED_SWEEP", 0)  # in the first call, too
     forks, logs = [], []
     with_team = engine.with_team
 

@@ -15,6 +15,8 @@ are visited slab by slab, and sweeps follow each other through the scene (`slabs
 from .decision import Decision, Facts
 from .effect import Effect
 
+# Contacts of a colour, and in such colours together, from which on threads share a sweep.
+SHARED_COLOUR, SHARED_SWEEP = 128, 512
 # Movable bodies from which on it pays, see `tests/benchmarks/packed_sweeps.py`.
 FEWEST_BODIES = 200
 

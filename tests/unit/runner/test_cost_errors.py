@@ -47,7 +47,7 @@ class FakeCell(RunCell):
         return SimpleNamespace(status="complete", step=np.zeros(2, [("contact_count", "i8")]))
 
 
-CELL = FakeCell(0, "", {}, Path("cell.mcap"), "complete")
+CELL = FakeCell(0, "", {}, Path(), "cell.mcap", "complete")
 
 
 def test_an_error_is_relative_to_its_scale_and_the_worst_of_a_row() -> None:

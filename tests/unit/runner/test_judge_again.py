@@ -26,7 +26,7 @@ def cell(index: int, impulse: float, status: str = "complete", damage: str = "")
     log: Any = trace_of([0.0] * 4, [(1, impulse, 0.0)], status=status)
     label = f"e={(0.1, 0.5)[index]}"
     coordinates = {"e": (0.1, 0.5)[index]}
-    one = Kept(index, label, coordinates, Path(f"run/cells/{index}.mcap"), "as the table says", None, [log])  # noqa: E501  # fmt: skip
+    one = Kept(index, label, coordinates, Path("run/cells"), f"{index}.mcap", "as the table says", None, [log])  # noqa: E501  # fmt: skip
     one._damage.append(damage)
     return one
 

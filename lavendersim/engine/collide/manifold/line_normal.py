@@ -15,7 +15,7 @@ line w beside it n . w = 0, with another cone's axis minus that one's sine.
 from __future__ import annotations
 
 from math import sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ...compile import inner, kernel, once
 from ...records import CONE
@@ -83,16 +83,8 @@ def direction_of(outline):
     return minus(position(outline.corners[1]), position(outline.corners[0]))
 
 
-@once
-def make_line_normal(spec):
-    """Return `kernel(a, b, offset, scratch)`, which may better the normal in `scratch.separation`.
-
-    The lines are the first two corners of the outlines. Nothing changes where neither body is
-    curved, or where the directions tried separate less than the one found.
-    """
-    separation_along = make_separation_along(spec)
-    is_curved, is_polyhedral = make_is_curved(spec), make_is_polyhedral(spec)
-    leans = any(shape.kind == CONE for shape in shapes_in(spec))
+def _make_leaning_lines(spec, separation_along):
+    """Return the same kernel of lines of which one leans against its axis."""
 
     def leaning_lines(a, b, offset, scratch):
         found, start = scratch.separation[0], normal_of(scratch.separation[0])
@@ -109,8 +101,21 @@ def make_line_normal(spec):
                 found.distance = s
                 least = s + FACE_SHARE * (a.bound + b.bound)
 
-    if leans:
-        leaning_lines = kernel(leaning_lines, spec)
+    return kernel(leaning_lines, spec)
+
+
+@once
+def make_line_normal(spec):
+    """Return `kernel(a, b, offset, scratch)`, which may better the normal in `scratch.separation`.
+
+    The lines are the first two corners of the outlines. Nothing changes where neither body is
+    curved, or where the directions tried separate less than the one found.
+    """
+    separation_along = make_separation_along(spec)
+    is_curved, is_polyhedral = make_is_curved(spec), make_is_polyhedral(spec)
+    leans = any(shape.kind == CONE for shape in shapes_in(spec))
+
+    leaning_lines: Any = _make_leaning_lines(spec, separation_along) if leans else None
 
     def line_normal(a, b, offset, scratch):
         if not is_curved(a) and not is_curved(b):

@@ -9,12 +9,8 @@ from ...atomics import CAN_WAIT
 from ...compile import compiling
 from ...kernel_cache import cached
 from ...spec import Spec
-from .lanes import WIDTH
 from .layout import PackedContacts, allocate_packed
-from .team_sweeps import WORTH_IT, make_serve
-
-# Contacts from which on a step may have a sweep that is worth sharing.
-WORTH_SHARING = WIDTH * WORTH_IT
+from .team_sweeps import make_serve
 
 
 def packed_of(workspace: Any) -> PackedContacts | None:
@@ -22,13 +18,6 @@ def packed_of(workspace: Any) -> PackedContacts | None:
     own = isinstance(workspace, PackedContacts)
     packed = workspace if own else getattr(workspace, "packed", None)
     return packed if isinstance(packed, PackedContacts) and CAN_WAIT else None
-
-
-def shares_sweeps(spec: Spec) -> bool:
-    """Whether an engine of this spec has sweeps that a team would share."""
-    from ..catalogue import SOLVERS
-
-    return packed_of(SOLVERS[spec.solver].allocate(spec, 0, 0)) is not None
 
 
 @cache

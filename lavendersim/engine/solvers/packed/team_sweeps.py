@@ -13,6 +13,7 @@ from typing import Any
 
 from ...atomics import fetch_add, load
 from ...compile import inner, kernel
+from ...effects.packed_sweeps import SHARED_COLOUR, SHARED_SWEEP
 from ...kernel_clock import nanoseconds
 from ...spec import Spec
 from ...team import (
@@ -40,7 +41,7 @@ from .lanes import WIDTH
 from .layout import HEAD, RUN
 
 # Groups from which on a stage is shared, and those in shared stages from which on a sweep is.
-FEWEST_GROUPS, WORTH_IT = 16, 64
+FEWEST_GROUPS, WORTH_IT = SHARED_COLOUR // WIDTH, SHARED_SWEEP // WIDTH
 # Pieces of a shared stage for each member: what one that comes late has not claimed others make.
 EACH = 2
 

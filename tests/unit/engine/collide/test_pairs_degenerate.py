@@ -60,8 +60,12 @@ def test_bodies_in_one_place_are_parted_by_their_least_depth(name, distance, rng
         assert manifold.phi.min() == pytest.approx(own, rel=0.01, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", MOVABLE)
-@pytest.mark.parametrize("axis", [0, 1, 2])
+# Beside a cone what is round is nearest to it across its side, which leans.
+ACROSS = ("sphere_cone", "ellipsoid_cone")
+APART = [(name, axis) for name in MOVABLE for axis in range(3) if name not in ACROSS or axis == 2]
+
+
+@pytest.mark.parametrize(("name", "axis"), APART)
 def test_parallel_bodies_metres_apart_have_their_true_distance(name, axis):
     offset = np.zeros(3)
     offset[axis] = 4.0
@@ -77,7 +81,9 @@ def test_parallel_bodies_metres_apart_have_their_true_distance(name, axis):
     )
 
 
-@pytest.mark.parametrize("name", [name for name in solid_poses.PAIRS if "capsule" in name])
+@pytest.mark.parametrize(
+    "name", [name for name in solid_poses.PAIRS if "capsule" in name and "cone" not in name]
+)
 def test_a_capsule_without_length_is_a_sphere(name):
     half = (0.3, 0.3, 0.0)
     kinds = SHAPE_PAIRS[name].shapes

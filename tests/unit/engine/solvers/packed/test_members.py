@@ -4,22 +4,10 @@ from __future__ import annotations
 
 from lavendersim.engine.atomics import CAN_WAIT
 from lavendersim.engine.solvers.packed.layout import allocate_packed
-from lavendersim.engine.solvers.packed.members import packed_of, serve_for, shares_sweeps
+from lavendersim.engine.solvers.packed.members import packed_of, serve_for
 from lavendersim.engine.spec import Spec
 
 PACKS = Spec(effects=("friction", "contact_torque", "rotation"), order="coloured")
-
-
-def test_only_what_packs_contacts_has_sweeps_to_share() -> None:
-    for solver, shared in (
-        ("coloured_gauss_seidel", CAN_WAIT),
-        ("projected_gauss_seidel", False),
-        ("adaptive", False),
-    ):
-        assert shares_sweeps(PACKS._replace(solver=solver)) == shared
-    late = PACKS._replace(solver="adaptive").including("packed_sweeps")
-    assert shares_sweeps(late) == CAN_WAIT
-    assert not shares_sweeps(late._replace(friction_cone="pyramid"))
 
 
 def test_packed_contacts_are_found_in_what_a_solver_works_in() -> None:
