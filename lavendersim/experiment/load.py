@@ -19,7 +19,7 @@ from lavendersim.experiment.cell import Cell, build_cell
 from lavendersim.experiment.checks.reading import Reading
 from lavendersim.experiment.experiment import Experiment
 from lavendersim.experiment.inheritance.parents import with_parents
-from lavendersim.experiment.mesh_files import with_mesh_files
+from lavendersim.experiment.mesh_files import refuse_mesh_files, with_mesh_files
 from lavendersim.experiment.models.experiment import ExperimentConfig
 from lavendersim.experiment.models.tree import swept_values
 from lavendersim.experiment.own_measures import with_own_measures
@@ -122,6 +122,8 @@ def _load(
     root, text, known = with_new_spellings(root, name), decode(raw), len(report.defects)
     if file is not None:
         root, text = _with_files(root, text, file, report)
+    else:
+        refuse_mesh_files(root, report)
     if len(report.defects) > known:  # of files beside this one: what it has is not known
         raise ConfigError(report.defects)
     root = tree = with_overrides(root, options.overrides, report)

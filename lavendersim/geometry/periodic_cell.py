@@ -46,3 +46,20 @@ def nearest_images(places: Floats, others: Floats, periodic: Any) -> Floats:
         away = (others[..., axis] - places[..., axis]) / (high - low)
         found[..., axis] += (high - low) * np.floor(away + 0.5)
     return found
+
+
+def images_that_reach(places: Floats, half: Floats, periodic: Any) -> tuple[Any, Floats]:
+    """Return rows (m,) and places (m, 3) [m]: all in the cell, and those of images that reach in.
+
+    half: (n, 3) of the bounds round each place [m]; less than half a period along every axis. Two
+    boxes of which any images meet have two among these that do.
+    """
+    rows, found = np.arange(len(places)), wrapped(places, periodic)
+    for axis, low, high in _ends(periodic):
+        along, reach = found[:, axis], half[rows, axis]
+        moves = np.zeros((1, 3))
+        moves[0, axis] = high - low
+        below, above = along - reach <= low, along + reach >= high
+        found = np.concatenate([found, found[below] + moves, found[above] - moves])
+        rows = np.concatenate([rows, rows[below], rows[above]])
+    return rows, found

@@ -9,6 +9,7 @@ import numpy as np
 from lavendersim.cell import CellScene
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.minkowski_sums import extents
+from lavendersim.geometry.periodic_cell import nearest_images
 from lavendersim.geometry.shapes import HalfSpace
 from lavendersim.measures.interfaces import Floats, Trace
 from lavendersim.measures.penetration import DEPTHS, depths
@@ -45,10 +46,9 @@ def unknown_overlap(scene: CellScene) -> str:
 def overlap_of_rows(trace: Trace, rows: Any) -> Floats:
     """Return the deepest penetration [m] of any two bodies in each of these rows of the log.
 
-    NaN in a periodic cell: bodies overlap across its faces, too, which is not looked for.
+    In a periodic cell bodies overlap across its faces, too, each with the other's nearest image.
     """
-    if trace.config.scene.periodic is not None:
-        return np.full(len(rows), NAN)
+    periodic = trace.config.scene.periodic
     solids, grounds = solids_of(trace.config.scene, list(trace.bodies))
     poses = trace.pose
     deepest = np.zeros(len(rows))
@@ -56,7 +56,7 @@ def overlap_of_rows(trace: Trace, rows: Any) -> Floats:
         placed = solids.placed(poses[row])
         found = [
             *_with_planes(solids, placed, grounds),
-            *_among_solids(solids, placed),
+            *_among_solids(solids, placed, periodic),
         ]
         # np.max, not fmax: one depth that is unknown leaves the deepest unknown
         deepest[index] = max(0.0, np.max(found)) if not np.isnan(found).any() else NAN
@@ -72,12 +72,13 @@ def _with_planes(solids: Solids, placed: PlacedSolids, grounds: list[HalfSpace])
     return found
 
 
-def _among_solids(solids: Solids, placed: PlacedSolids) -> list[float]:
-    first, second = near_pairs(solids.sums, placed, solids.movable)
+def _among_solids(solids: Solids, placed: PlacedSolids, periodic: Any) -> list[float]:
+    first, second = near_pairs(solids.sums, placed, solids.movable, periodic)
     found = [0.0]
     kinds = np.stack([solids.kind[first], solids.kind[second]], axis=1)
     for kind_a, kind_b in np.unique(kinds, axis=0):
         alike = (kinds == (kind_a, kind_b)).all(axis=1)
         a, b = placed.take(first[alike]), placed.take(second[alike])
+        b = b._replace(position=nearest_images(b.position, a.position, periodic))
         found.append(float(np.max(depths(int(kind_a), int(kind_b), a, b))))
     return found

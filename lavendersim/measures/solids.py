@@ -17,6 +17,7 @@ from lavendersim.cell.shapes import CellShape, Primitive
 from lavendersim.geometry.bodies import is_movable
 from lavendersim.geometry.meeting_boxes import meeting_boxes
 from lavendersim.geometry.minkowski_sums import Sums, extents, sums_of
+from lavendersim.geometry.periodic_cell import images_that_reach
 from lavendersim.geometry.rotations import rotation_matrices
 from lavendersim.geometry.shapes import HalfSpace, half_space
 from lavendersim.measures.interfaces import Floats
@@ -85,9 +86,21 @@ def size_of(shape: CellShape) -> list[float]:
     return [row.get(name, 0.0) for name in ("hx", "hy", "hz")]
 
 
-def near_pairs(sums: Sums, placed: PlacedSolids, movable: np.ndarray) -> tuple[Any, Any]:
-    """Return the two columns of pairs of which one can move and whose bounds meet."""
+def near_pairs(
+    sums: Sums, placed: PlacedSolids, movable: np.ndarray, periodic: Any = None
+) -> tuple[Any, Any]:
+    """Return the two columns of pairs of which one can move and whose bounds meet.
+
+    periodic: of a scene, whose images meet, too; no body meets its own.
+    """
     half = np.stack([extents(sums, placed.rotation, axis) for axis in (X, Y, Z)], axis=1)
-    a, b = meeting_boxes(placed.position - half, placed.position + half)
+    rows, places = np.arange(len(half)), placed.position
+    if periodic is not None:
+        rows, places = images_that_reach(places, half, periodic)
+    a, b = meeting_boxes(places - half[rows], places + half[rows])
+    a, b = rows[a], rows[b]
+    if periodic is not None:
+        pairs = np.unique(np.sort(np.stack([a, b], axis=1)[a != b], axis=1), axis=0)
+        a, b = pairs[:, 0], pairs[:, 1]
     moves = movable[a] | movable[b]
     return a[moves], b[moves]

@@ -4,6 +4,7 @@
     an item of `expect`           merged into the parent's of the same name, where that stands
     `key: null`                   removes the parent's key; where it has none it stays as written
     a list, a scalar              replaces
+    `file` of a mesh              replaces its `vertices` and `triangles`, and these a `file`
 
 Nodes keep their places, so that what is wrong is reported in the file that says it.
 """
@@ -12,6 +13,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from lavendersim.experiment.models.meshes import FILE, TRIANGLES
 from lavendersim.experiment.resolve.presets import with_named_preset
 from lavendersim.experiment.text.node import Node, Path
 from lavendersim.experiment.text.report import Report
@@ -39,6 +41,8 @@ def _merged(parent: Node, child: Node, path: Path, report: Report) -> Node:
     if None not in kinds and kinds[0] != kinds[1]:
         return child
     entries, keys = dict(parent.entries), dict(parent.keys)
+    for replaced in _other_form(child) if kinds[0] == "mesh" else ():
+        entries.pop(replaced, None)
     for key, node in child.entries.items():
         below = (*path, key)
         if node.content is None and key in entries and below not in VALUE_NULL:
@@ -48,6 +52,13 @@ def _merged(parent: Node, child: Node, path: Path, report: Report) -> Node:
         entries[key] = _merged(entries[key], node, below, report) if key in entries else node
         keys[key] = child.keys.get(key, child.mark)
     return Node(entries, child.mark, keys, parent.incomplete or child.incomplete)
+
+
+def _other_form(mesh: Node) -> tuple[str, ...]:
+    """Return the keys that say in another way what a mesh is than those that are written."""
+    if mesh.get(FILE).content is not None:
+        return TRIANGLES
+    return (FILE,) if any(mesh.get(key).content is not None for key in TRIANGLES) else ()
 
 
 def _expectations(parent: Node, child: Node, report: Report) -> Node:

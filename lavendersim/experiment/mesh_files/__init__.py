@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from lavendersim.experiment.mesh_files.grafted import with_mesh_files
+from lavendersim.experiment.mesh_files.grafted import refuse_mesh_files, with_mesh_files
 
-__all__ = ["with_mesh_files"]
+__all__ = ["refuse_mesh_files", "with_mesh_files"]

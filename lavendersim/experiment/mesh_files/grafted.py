@@ -19,7 +19,7 @@ from lavendersim.experiment.inheritance.parents import check_size, project_of
 from lavendersim.experiment.mesh_files.obj import read_obj
 from lavendersim.experiment.mesh_files.stl import read_stl
 from lavendersim.experiment.mesh_files.triangles import FileTriangles, MeshFileError
-from lavendersim.experiment.models.meshes import FILE
+from lavendersim.experiment.models.meshes import FILE, TRIANGLES
 from lavendersim.experiment.models.tree import BODIES
 from lavendersim.experiment.text import file as text_file
 from lavendersim.experiment.text.node import Mark, Node, graft, key_mark
@@ -54,7 +54,7 @@ def with_mesh_files(
             continue
         folder = files.get(node.mark.file, config).resolve().parent
         places[os.path.relpath(folder / str(node.text), config.resolve().parent)] = None
-        if other := next((key for key in ("vertices", "triangles") if key in shape.entries), None):
+        if other := next((key for key in TRIANGLES if key in shape.entries), None):
             sentence = f"{other}: {quoted(node.text)} has them; keep one"
             report.add(key_mark(shape, other), sentence)
             continue
@@ -66,6 +66,15 @@ def with_mesh_files(
     text = f"# {config.name}, with the triangles of {names}.\n{as_yaml(tree.data)}"
     check_size(text, FILE, named[0][1].get(FILE).mark, report)
     return tree, text
+
+
+def refuse_mesh_files(root: Node, report: Report) -> None:
+    """Note each mesh that is of a file, where the config is none and has no folder."""
+    for _, shape in _shapes(root):
+        node = shape.get(FILE)
+        if node.content is not None:
+            sentence = "a config given as text has no folder to look in; expected vertices and"
+            report.add(node.mark, f"{FILE}: {sentence} triangles, or a config that is a file")
 
 
 def _shapes(root: Node) -> list[tuple[TreePath, Node]]:

@@ -14,6 +14,7 @@ from lavendersim.quantities.quantity import Position, Quantity, Vector
 MOST_TRIANGLES: Final = 1 << 17  # edges are counted in twenty bits of a contact's feature
 MOST_VERTICES: Final = 3 * MOST_TRIANGLES
 FILE: Final = "file"
+TRIANGLES: Final = ("vertices", "triangles")  # instead of a file
 
 Corner = Annotated[
     tuple[int, int, int], Vector(3, Quantity(whole=True, minimum=0, maximum=MOST_VERTICES))
@@ -55,7 +56,11 @@ class Mesh(ConfigModel):
         """It has vertices and triangles; those of a file are here in its place by now."""
         if (mark := at.written(FILE)) is not None:
             where = "of a config's file, in scene.bodies or scene.shapes"
-            at.refuse(mark, f"{FILE}: expected it as the key of a mesh {where}; sweep its name")
+            sentence = f"{FILE}: expected it as the key of a mesh {where}; sweep its name"
+            if (value := at.get(FILE).mark).file.startswith("--"):
+                mark, why = value, "an option has no folder to look in"
+                sentence = f"{FILE}: {why}; expected the name of a mesh of scene.shapes as `shape`"
+            at.refuse(mark, sentence)
             return
         unknown = [key for key in at.node.entries if key not in cls.model_fields]
         for key, meaning in _NEEDED.items():

@@ -17,10 +17,7 @@ class Overlap(Measure):
     """Deepest penetration [m] of any two bodies at the end of the run, from their geometry."""
 
     READS = POSES
-    NO_NUMBER = (
-        "the window is longer than the run, shapes come close whose depth has no formula, or the "
-        "scene is a periodic cell"
-    )
+    NO_NUMBER = "the window is longer than the run, or shapes come close whose depth has no formula"
     kind: Literal["overlap"]
     last: Seconds = Field(default=1.0, description="length of the window at the end [s]")
     every: Stride = Field(

@@ -124,10 +124,38 @@ def test_both_a_file_and_vertices_are_refused(folder: Path) -> None:
     assert refusals(folder / "it.yaml") == [said]
 
 
-def test_a_file_in_a_sweep_or_a_text_is_refused(folder: Path) -> None:
+@pytest.mark.parametrize(
+    ("parent", "child"), [(IN_YAML, "file: cube.obj"), ("file: gone.stl", IN_YAML)]
+)
+def test_a_file_replaces_the_triangles_of_a_parent_and_they_a_file(
+    folder: Path, parent: str, child: str
+) -> None:
+    config(folder, f"scale: 2, {parent}", "base.yaml")
+    shape = f"scene: {{bodies: {{part: {{shape: {{{child}}}}}}}}}"
+    (folder / "child.yaml").write_text(f"extends: base.yaml\n{shape}\n")
+    assert digest(folder / "child.yaml") == digest(config(folder, f"scale: 2, {IN_YAML}"))
+
+
+def test_a_file_that_a_text_or_an_option_names_is_refused_at_its_place(folder: Path) -> None:
+    text, (place,) = marked_places(CONFIG.format(mesh="file: §cube.obj"))
+    with pytest.raises(ConfigError) as refused:
+        load_experiment_text(text, "config.yaml")
+    assert str(refused.value) == (
+        f"config.yaml:{place}: file: a config given as text has no folder to look in; expected "
+        "vertices and triangles, or a config that is a file"
+    )
+    named = "set scene.bodies.part.shape.file="
+    for mesh in ("file: cube.obj", IN_YAML):
+        with pytest.raises(ConfigError) as refused:
+            load_experiment(config(folder, mesh), overrides=[f"{named}text.stl"])
+        assert str(refused.value) == (
+            f"--{named}text.stl:1:{len(named) + 3}: file: an option has no folder to look in; "
+            "expected the name of a mesh of scene.shapes as `shape`"
+        )
+
+
+def test_a_file_in_a_sweep_is_refused(folder: Path) -> None:
     path = config(folder, "file: cube.obj")
-    with pytest.raises(ConfigError, match="file: expected it as the key of a mesh of a config's"):
-        load_experiment_text(path.read_text(), "config.yaml")
     named = "part: {path: scene.bodies.part.shape.file, values: [text.stl]}"
     with path.open("a") as text:
         text.write(f"sweep: {{{named}}}\n")
