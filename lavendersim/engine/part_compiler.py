@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 from llvmlite import ir
 from llvmlite.binding import (
     Linkage,
-    create_new_function_pass_manager,
     llvm_version_info,
     parse_assembly,
 )
@@ -26,7 +25,6 @@ from numba.core.funcdesc import ExternalFunctionDescriptor, default_mangler
 from numba.core.itanium_mangler import mangle
 from numba.core.registry import CPUDispatcher
 from numba.core.sigutils import normalize_signature
-from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import NativeLowering
 from numba.core.typing.templates import make_concrete_template, signature
 
@@ -38,8 +36,9 @@ from .kernel_lowering import KernelLowering, is_direct, names_places
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of
 from .kernel_typing import quick
 from .memory_references import REFERENCES, are_rows
-from .optimisation import optimise
+from .optimisation import optimise, shortening
 from .separate_code import merge, separate_code
+from .single_assignment import canonical
 
 if llvm_version_info < (17, 0, 0):
     raise ImportError("pointers have types: a part serves one layout of records only")
@@ -68,10 +67,6 @@ def _is_success(returns: Any) -> bool:
     return isinstance(status, ir.Constant) and status.constant == 0
 
 
-# What makes a part's bitcode a third as long, for a tenth of the time that the whole takes.
-SHORTENING = "add_sroa_pass", "add_instruction_combine_pass", "add_simplify_cfg_pass"
-
-
 class PartCode(_Linking):
     """Code of a kernel that other kernels call: optimised in each whole kernel it is linked into.
 
@@ -89,9 +84,7 @@ class PartCode(_Linking):
         self.places = places_in(ir_module)
         module = parse_assembly(str(ir_module))
         module.name, module.data_layout = ir_module.name, self._codegen._data_layout
-        passes = create_new_function_pass_manager()
-        for add in SHORTENING:
-            getattr(passes, add)()
+        passes = shortening()
         builder = self._codegen._pass_builder()
         for function in module.functions:
             if not function.is_declaration:
@@ -228,7 +221,7 @@ class _Passes(PassManager):
             one.run_pass(state)
             one.run_finalizer(state)
             if found.mutates_CFG and compiler_pass is not KernelLowering:
-                state.func_ir.blocks = canonicalize_cfg(state.func_ir.blocks)
+                state.func_ir.blocks = canonical(state.func_ir)
 
 
 def _pipeline(state: Any) -> PassManager:
