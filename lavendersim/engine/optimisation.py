@@ -15,11 +15,7 @@ import re
 from collections import Counter
 from typing import Any, Final
 
-from llvmlite.binding import (
-    Linkage,
-    create_new_function_pass_manager,
-    create_new_module_pass_manager,
-)
+from llvmlite.binding import Linkage, create_new_module_pass_manager
 from numba.core import config
 
 # LLVM's first level takes two thirds of the time of its third, and kernels are as fast.
@@ -35,18 +31,12 @@ _FUNCTION = re.compile(r"^define [^@\n]*" + _SYMBOL + r".*?\n(.*?)^}", re.MULTIL
 
 
 def optimise(
-    module: Any,
-    parts: set[str],
-    codegen: Any,
-    *,
-    short: int = SHORT,
-    vectors: bool = False,
-    seldom: bool = False,
+    module: Any, parts: set[str], codegen: Any, *, short: int = SHORT, vectors: bool = False
 ) -> None:
     """Optimise a module once, with parts of these symbols in it.
 
     short: lines of what is merged wherever it is called; vectors: its loops are made loops of
-    vectors, where LLVM can; seldom: what remains is only shortened.
+    vectors, where LLVM can.
 
     Parts are called from here alone. Numba would optimise twice, so that counts of references meet
     in one function; kernels count none.
@@ -72,19 +62,10 @@ def optimise(
     merging.add_always_inliner_pass()
     merging.add_global_dead_code_eliminate_pass()
     merging.run(module, builder)
-    passes = shortening() if seldom else builder.getFunctionPassManager()
+    passes = builder.getFunctionPassManager()
     for function in module.functions:
         if not function.is_declaration:
             passes.run(function, builder)
-
-
-def shortening() -> Any:
-    """Return three passes that make code a third as long, for a tenth of the time that all take."""
-    passes = create_new_function_pass_manager()
-    passes.add_sroa_pass()
-    passes.add_instruction_combine_pass()
-    passes.add_simplify_cfg_pass()
-    return passes
 
 
 def counted(text: str) -> tuple[Counter[str], dict[str, int]]:

@@ -107,11 +107,9 @@ def _compiled(
     module = parse_bitcode(part.bitcode)
     module.name, module.data_layout = part.symbol, codegen._data_layout
     merged = merge(module, part.called, records, codegen)
-    seldom = part.separate == SELDOM
-    short = SELDOM_SHORT if seldom else SHORT
+    short = SELDOM_SHORT if part.separate == SELDOM else SHORT
     vectors = part.separate == IN_VECTORS
-    inner = merged - {part.symbol}
-    optimise(module, inner, codegen, short=short, vectors=vectors, seldom=seldom)
+    optimise(module, merged - {part.symbol}, codegen, short=short, vectors=vectors)
     function = module.get_function(part.symbol)
     names = _argument_names(function)
     body = str(function).split("{", 1)[1]
