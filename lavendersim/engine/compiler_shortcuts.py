@@ -13,19 +13,20 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from importlib import import_module
 from typing import Any
 
-from numba.core import errors, event, interpreter, ir, typeinfer
+from numba.core import errors, event, interpreter, ir, ssa, typeinfer
 from numba.core.datamodel.packer import ArgPacker
 from numba.core.errors import WarningsFixer  # type: ignore[attr-defined]
 from numba.core.postproc import PostProcessor
-from numba.core.transforms import canonicalize_cfg
 
 from .kernel_typing import propagate
+from .single_assignment import canonical, run_ssa
 
 _postproc: Any = PostProcessor
 _instruction: Any = ir.Inst
 _warnings: Any = WarningsFixer
 _events: Any = event
 _typeinfer: Any = typeinfer
+_ssa: Any = ssa
 _inferer: Any = typeinfer.TypeInferer
 _interpreter: Any = interpreter.Interpreter
 if not (hasattr(_typeinfer, "new_error_context") and hasattr(_interpreter, "post_process")):
@@ -96,10 +97,10 @@ def shortened() -> Iterator[None]:
         if emit_dels or self.func_ir.is_generator or not hasattr(self.func_ir.func_id, "is_kernel"):
             whole(self, emit_dels, extend_lifetimes)
         else:
-            self.func_ir.blocks = canonicalize_cfg(self.func_ir.blocks)
+            self.func_ir.blocks = canonical(self.func_ir)
             self.func_ir.generator_info = None
 
-    asked = _inferer.propagate
+    asked, renamed = _inferer.propagate, _ssa._run_ssa
 
     def propagate_types(self: Any, raise_errors: bool = True) -> Any:
         done = hasattr(self.func_id, "is_kernel") and propagate(self)
@@ -113,7 +114,7 @@ def shortened() -> Iterator[None]:
         return looked_over(self, peepholes, func_ir)
 
     _interpreter.post_process = look_over
-    _inferer.propagate = propagate_types
+    _inferer.propagate, _ssa._run_ssa = propagate_types, run_ssa
     _postproc.run = run
     _instruction._rec_list_vars = variables_of
     _warnings.catch_warnings = _as_they_come
@@ -127,7 +128,7 @@ def shortened() -> Iterator[None]:
         yield
     finally:
         _interpreter.post_process = looked_over
-        _inferer.propagate = asked
+        _inferer.propagate, _ssa._run_ssa = asked, renamed
         _postproc.run = whole
         _instruction._rec_list_vars = listed
         _warnings.catch_warnings = caught

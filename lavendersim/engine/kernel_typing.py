@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
+from operator import getitem
 from typing import Any, Final
 
 from numba.core import errors, typeinfer, types
@@ -106,6 +107,7 @@ def propagate(infer: Any) -> bool:
 _SCALARS = types.Number, types.Boolean, types.NoneType, types.Literal
 _HOLDERS = types.Record, types.BaseNamedTuple
 _resolved: dict[Any, Any] = {}
+_items: dict[tuple[int, int], Any] = {}  # of what is indexed by what, by numba's codes
 _attributes: dict[tuple[int, str], Any] = {}  # of records and named tuples, by numba's code of both
 
 
@@ -120,6 +122,11 @@ def quick(typingctx: Any) -> Any:
     def resolve_function_type(function: Any, args: Any, kws: Any) -> Any:
         if isinstance(function, types.Dispatcher) and hasattr(function.dispatcher, "signature_for"):
             return function.dispatcher.signature_for(args, kws)
+        if function is getitem and not kws:
+            place = args[0]._code, args[1]._code
+            if place not in _items:
+                _items[place] = typingctx.resolve_function_type(function, args, kws)
+            return _items[place]
         scalar = isinstance(function, types.Function) and not kws
         if not scalar or not all(isinstance(kind, _SCALARS) for kind in args):
             return typingctx.resolve_function_type(function, args, kws)

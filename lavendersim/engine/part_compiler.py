@@ -26,7 +26,6 @@ from numba.core.funcdesc import ExternalFunctionDescriptor, default_mangler
 from numba.core.itanium_mangler import mangle
 from numba.core.registry import CPUDispatcher
 from numba.core.sigutils import normalize_signature
-from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import NativeLowering
 from numba.core.typing.templates import make_concrete_template, signature
 
@@ -40,6 +39,7 @@ from .kernel_typing import quick
 from .memory_references import REFERENCES, are_rows
 from .optimisation import optimise
 from .separate_code import merge, separate_code
+from .single_assignment import canonical
 
 if llvm_version_info < (17, 0, 0):
     raise ImportError("pointers have types: a part serves one layout of records only")
@@ -228,7 +228,7 @@ class _Passes(PassManager):
             one.run_pass(state)
             one.run_finalizer(state)
             if found.mutates_CFG and compiler_pass is not KernelLowering:
-                state.func_ir.blocks = canonicalize_cfg(state.func_ir.blocks)
+                state.func_ir.blocks = canonical(state.func_ir)
 
 
 def _pipeline(state: Any) -> PassManager:

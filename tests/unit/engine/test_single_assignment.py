@@ -1,0 +1,70 @@
+"""Names of variables that are assigned more than once are those that numba gives."""
+
+from types import SimpleNamespace
+
+import pytest
+from numba.core import ssa
+from numba.core.compiler import run_frontend
+from numba.core.transforms import canonicalize_cfg
+
+single_assignment = pytest.importorskip("lavendersim.engine.single_assignment")
+
+
+def _once(x):
+    return x + 1
+
+
+def _branches_and_loops(count, x):
+    found = a = 0
+    for k in range(count):
+        if k > x:
+            a, b = k, a
+        elif k == 3:
+            a = b = a + 1
+        else:
+            continue
+        while b > 0:
+            b -= a
+            if b == 7:
+                break
+            found += b
+    return found, a
+
+
+def _perhaps_unassigned(count):
+    while count > 0:
+        count -= 1
+        if count == 2:
+            last = count
+    return last
+
+
+FUNCTIONS = (_once, _branches_and_loops, _perhaps_unassigned)
+
+
+def _text(blocks):
+    return [(label, [str(each) for each in block.body]) for label, block in blocks.items()]
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_each_assignment_has_the_name_that_numba_gives(function):
+    before = run_frontend(function).blocks
+    found = _text(single_assignment.run_ssa(before))
+    assert found == _text(ssa._run_ssa(run_frontend(function).blocks))
+    names = [row.split(" = ")[0] for _, rows in found for row in rows if " = " in row]
+    assert len(names) == len(set(names))
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_loops_have_one_way_back_and_are_looked_for_where_jumps_have_changed(function):
+    code = run_frontend(function)
+    expected = _text(canonicalize_cfg(code.blocks))
+    code = SimpleNamespace(blocks=code.blocks, func_id=SimpleNamespace())
+    code.blocks = single_assignment.canonical(code)
+    assert _text(code.blocks) == expected
+    code.blocks = single_assignment.canonical(code)
+    assert single_assignment.canonical(code) is code.blocks
+    changed = dict(code.blocks)
+    changed[max(changed) + 1] = changed[max(changed)]
+    code.blocks = changed
+    assert single_assignment.canonical(code) is not changed
