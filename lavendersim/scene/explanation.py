@@ -103,12 +103,13 @@ def _explained(plan: Plan, others: Iterable[Plan]) -> Explanation:
 def _threads(plan: Plan) -> str:
     solver = plan.spec.solver
     colours = f"colours of {SHARED_COLOUR} contacts and more hold {SHARED_SWEEP} together"
-    if plan.spec.has("packed_sweeps"):
+    packed = _decided(plan, "packed_sweeps")
+    if packed.on:
         return f"sweeps are shared where {colours}"
     if solver == "coloured_gauss_seidel":
         return f"sweeps are shared where contacts are packed by eight and {colours}"
     if solver == "adaptive":
-        return f"nothing is shared: {_decided(plan, 'packed_sweeps').reason}"
+        return f"nothing is shared: {packed.reason}"
     return f"nothing is shared: the solver is {solver}, and packs no contacts by eight"
 
 

@@ -81,7 +81,12 @@ ASKED = {
         "solvers/newton/factor": "joints are projected by its rounds with other solvers, too",
         "effects/least_norm": "chooses among what it leaves undetermined, by its factors",
     },
-    "packed_sweeps": {"solvers/packed/late": "from which contact on this solver has them"},
+    "packed_sweeps": {
+        "solvers/packed/late": "from which contact on this solver has them",
+        "solvers/packed/team_sweeps": "of how many contacts threads share them",
+        "engine": "of how many contacts a step has threads",
+        "scene/explanation": "what threads would share",
+    },
     "supernodes": {"solvers/newton/factor": "which of two factors a contact graph gets"},
     "least_norm": {"scene/plan": "how many bodies it is affordable for divides plans"},
     "impact_order": {

@@ -22,9 +22,9 @@ VERTICES = "vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]"
             ['unknown key "triangle" in scene.bodies.part.shape; did you mean "triangles"?'],
         ),
         (
-            "{kind: mesh, §file: part.stl}",
-            ["file: expected it as the key of a mesh of a config's file, in scene.bodies or "
-             "scene.shapes; sweep its name"],
+            "{kind: mesh, file: §part.stl}",
+            ["file: a config given as text has no folder to look in; expected vertices and "
+             "triangles, or a config that is a file"],
         ),
         (
             f"{{kind: mesh, {VERTICES}, triangles: [[0, 1, 2]], scale: §0}}",
