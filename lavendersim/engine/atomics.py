@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import os
 import platform
-from typing import Any, Final
+from typing import Final
 
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.typing.templates import signature
 
 from .compile import inner
+from .solvers.packed.lane_memory import place_of
 from .solvers.packed.lanes import primitive
 
 _WORD: Final = ir.IntType(64)
@@ -27,17 +28,12 @@ _X86: Final = platform.machine().lower() in {"x86_64", "amd64"}
 CAN_WAIT: Final = os.name == "posix"
 
 
-def _place(context: Any, builder: Any, array_type: Any, array: Any, at: Any) -> Any:
-    data = context.make_array(array_type)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [at]), ir.PointerType(_WORD))
-
-
 @primitive
 def load(typing, words, at):
     """Return words[at]."""
 
     def emit(context, builder, sig, args):
-        pointer = _place(context, builder, sig.args[0], *args)
+        pointer = place_of(context, builder, _WORD, sig.args[0], *args)
         return builder.load_atomic(pointer, "acquire", _BYTES)
 
     return signature(types.int64, words, at), emit
@@ -49,7 +45,7 @@ def store(typing, words, at, value):
 
     def emit(context, builder, sig, args):
         array, at, value = args
-        pointer = _place(context, builder, sig.args[0], array, at)
+        pointer = place_of(context, builder, _WORD, sig.args[0], array, at)
         builder.store_atomic(value, pointer, "release", _BYTES)
         return context.get_dummy_value()
 
@@ -62,7 +58,7 @@ def fetch_add(typing, words, at, value):
 
     def emit(context, builder, sig, args):
         array, at, value = args
-        pointer = _place(context, builder, sig.args[0], array, at)
+        pointer = place_of(context, builder, _WORD, sig.args[0], array, at)
         return builder.atomic_rmw("add", pointer, value, "acq_rel")
 
     return signature(types.int64, words, at, types.int64), emit
@@ -74,7 +70,7 @@ def _replace(typing, words, at, before, after):
 
     def emit(context, builder, sig, args):
         array, at, before, after = args
-        pointer = _place(context, builder, sig.args[0], array, at)
+        pointer = place_of(context, builder, _WORD, sig.args[0], array, at)
         found = builder.cmpxchg(pointer, before, after, "acq_rel", "acquire")
         return builder.extract_value(found, 1)
 

@@ -8,7 +8,7 @@ matters for its balance.
 from __future__ import annotations
 
 from ...compile import inner
-from ...vectors import cross, dot, minus, position, vector_of
+from ...vectors import Vec3, cross, dot, minus, position, vector_of
 
 # Points that `keep_four` exchanges at most: three are kept beside the deepest, most fit at once.
 EXCHANGES = 4
@@ -149,6 +149,15 @@ def reduce_manifold(manifold, points, count, n):
 def put_manifold_normal(manifold, n):
     """Write the normal that all points share."""
     manifold.normal[0], manifold.normal[1], manifold.normal[2] = n.x, n.y, n.z
+
+
+@inner
+def put_ball_point(manifold, n, ball, phi):
+    """Write the one point of a ball B: from its centre to its surface, and on by half of phi."""
+    put_manifold_normal(manifold, n)
+    back = ball.hx + 0.5 * phi
+    p = Vec3(ball.x - back * n.x, ball.y - back * n.y, ball.z - back * n.z)
+    place(manifold.points[0], p, phi, 0)
 
 
 @inner

@@ -12,14 +12,13 @@ from math import sqrt
 
 from ...compile import kernel
 from ...step_terms import step_terms
-from ...vectors import Vec3, dot, from_body, into_body, negative, position
+from ...vectors import Vec3, dot, from_body, into_body, negative
 from ..manifold.features import FACE_COSINE
-from ..manifold.point import place, write_manifold
 from ..records import put_position
 from ..scratch import CAP_CORNERS
 from ..shapes.cone import APEX
 from ..shapes.cylinder import NO_LENGTH, put_cap
-from .cylinder_plane import DEEP, LEANS, ROUNDER, make_put_rim
+from .cylinder_plane import DEEP, LEANS, ROUNDER, keep_corners, make_put_rim
 
 
 def make(spec):
@@ -45,20 +44,7 @@ def make(spec):
             lowest = from_body(cone, Vec3(cone.hx * x, cone.hx * y, -cone.hz))
             put_position(outline.corners[0], lowest)
             put_position(outline.corners[1], from_body(cone, Vec3(0.0, 0.0, APEX * cone.hz)))
-        count, rows = 0, scratch.polygon
-        for k in range(total):
-            p = position(outline.corners[k])
-            phi = height + n.x * p.x + n.y * p.y + n.z * p.z
-            if phi <= margin:
-                half = 0.5 * phi
-                middle = Vec3(
-                    cone.x + p.x - half * n.x,
-                    cone.y + p.y - half * n.y,
-                    cone.z + p.z - half * n.z,
-                )
-                place(rows[count], middle, phi, first + k)
-                count += 1
-        kept = write_manifold(scratch.manifold, rows, count, n)
+        kept = keep_corners(cone, (total, first), (n, height), margin, scratch)
         if overlooks:
             if down.z < -LEANS and cone.hx * across * ROUNDER > DEEP:
                 kept += put_rim(cone, (down, across, height), n, margin, kept, scratch)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin, sqrt
 
-from ...compile import kernel
+from ...compile import inner, kernel
 from ...step_terms import step_terms
 from ...vectors import Vec3, dot, from_body, into_body, negative, position
 from ..manifold.features import FACE_COSINE
@@ -27,6 +27,30 @@ LEANS = 0.1
 # How much lower the rim is than a side of its octagon, in radii times the sine of the tilt [-].
 ROUNDER = 1.0 - cos(pi / 8.0)
 RIM_POINTS = 16  # a rim's points; every other one is a corner of its octagon
+
+
+@inner
+def keep_corners(body, corners, plane, margin, scratch):
+    """Write those of the first corners of `outline_b` that are near the plane; return how many.
+
+    corners: how many there are, and what the first is called. plane: its normal, and the height of
+    the body's centre above it [m].
+    """
+    (total, first), (n, height) = corners, plane
+    count, rows = 0, scratch.polygon
+    for k in range(total):
+        p = position(scratch.outline_b.corners[k])
+        phi = height + n.x * p.x + n.y * p.y + n.z * p.z
+        if phi <= margin:
+            half = 0.5 * phi
+            middle = Vec3(
+                body.x + p.x - half * n.x,
+                body.y + p.y - half * n.y,
+                body.z + p.z - half * n.z,
+            )
+            place(rows[count], middle, phi, first + k)
+            count += 1
+    return write_manifold(scratch.manifold, rows, count, n)
 
 
 def make_put_rim(spec):
@@ -87,20 +111,7 @@ def make(spec):
                 z = cylinder.hz if end else -cylinder.hz
                 lowest = from_body(cylinder, Vec3(share * down.x, share * down.y, z))
                 put_position(outline.corners[end], lowest)
-        count, rows = 0, scratch.polygon
-        for k in range(total):
-            p = position(outline.corners[k])
-            phi = height + n.x * p.x + n.y * p.y + n.z * p.z
-            if phi <= margin:
-                half = 0.5 * phi
-                middle = Vec3(
-                    cylinder.x + p.x - half * n.x,
-                    cylinder.y + p.y - half * n.y,
-                    cylinder.z + p.z - half * n.z,
-                )
-                place(rows[count], middle, phi, first + k)
-                count += 1
-        kept = write_manifold(scratch.manifold, rows, count, n)
+        kept = keep_corners(cylinder, (total, first), (n, height), margin, scratch)
         if overlooks:
             if abs(down.z) > LEANS and cylinder.hx * across * ROUNDER > DEEP:
                 kept += put_rim(cylinder, (down, across, height), n, margin, kept, scratch)

@@ -10,7 +10,7 @@ from math import sqrt
 
 from ...compile import kernel
 from ...vectors import Vec3, from_body, into_body, minus
-from ..manifold.point import place, put_manifold_normal
+from ..manifold.point import put_ball_point
 from .sphere_sphere import NO_DIRECTION
 
 
@@ -39,11 +39,7 @@ def make(spec):
         if phi > margin:
             return 0
         n = from_body(cylinder, Vec3(side * ux, side * uy, rise))
-        put_manifold_normal(scratch.manifold, n)
-        # From B's centre to its surface, and on by half the separation.
-        back = sphere.hx + 0.5 * phi
-        p = Vec3(sphere.x - back * n.x, sphere.y - back * n.y, sphere.z - back * n.z)
-        place(scratch.manifold.points[0], p, phi, 0)
+        put_ball_point(scratch.manifold, n, sphere, phi)
         return 1
 
     return kernel(sphere_cylinder, spec)

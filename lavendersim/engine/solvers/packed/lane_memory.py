@@ -35,7 +35,7 @@ STRIDE = 8  # numbers from one body's state to the next
 _LAST = [0, 1, 2, 7]  # of two vectors of four: x, y, z of the first, the second's last
 
 
-def _place(context: Any, builder: Any, kind: Any, array_type: Any, array: Any, at: Any) -> Any:
+def place_of(context: Any, builder: Any, kind: Any, array_type: Any, array: Any, at: Any) -> Any:
     """Return a pointer to number `at` of a flat array."""
     data = context.make_array(array_type)(context, builder, array).data
     return builder.bitcast(builder.gep(data, [at]), ir.PointerType(kind))
@@ -56,7 +56,7 @@ def _make_take(kind: Any, stored: Any) -> Any:
     @primitive
     def take(typing, numbers, at):
         def emit(context, builder, sig, args):
-            return _load(builder, _place(context, builder, stored, sig.args[0], *args))
+            return _load(builder, place_of(context, builder, stored, sig.args[0], *args))
 
         return signature(kind, numbers, at), emit
 
@@ -68,7 +68,7 @@ def _make_put(stored: Any) -> Any:
     def put(typing, numbers, at, value):
         def emit(context, builder, sig, args):
             array, at, value = args
-            _store(builder, value, _place(context, builder, stored, sig.args[0], array, at))
+            _store(builder, value, place_of(context, builder, stored, sig.args[0], array, at))
             return context.get_dummy_value()
 
         return signature(types.void, numbers, at, value), emit
@@ -87,7 +87,7 @@ def take_triples(typing, numbers, at):
     """Return Triples whose x, y and z lie eight by eight, one after the other."""
 
     def emit(context, builder, sig, args):
-        first = _place(context, builder, EIGHT, sig.args[0], *args)
+        first = place_of(context, builder, EIGHT, sig.args[0], *args)
         parts = [builder.gep(first, [ir.Constant(INDEX, k)]) for k in range(3)]
         return joined(builder, [_load(builder, part) for part in parts])
 
@@ -103,10 +103,10 @@ def _halves(
     """
     state, ends, at = args[:3]
     place = builder.add(at, ir.Constant(INDEX, k))
-    body = builder.load(_place(context, builder, INDEX, sig.args[1], ends, place))
+    body = builder.load(place_of(context, builder, INDEX, sig.args[1], ends, place))
     if least is not None:
         body = builder.select(builder.icmp_signed("<", body, least), least, body)
-    first = _place(context, builder, FOUR, sig.args[0], state, body)
+    first = place_of(context, builder, FOUR, sig.args[0], state, body)
     return [first, builder.gep(first, [ir.Constant(INDEX, 1)])]
 
 
