@@ -85,7 +85,8 @@ def make_turn_in_halves(spec: Spec) -> Any:
         v.wx, v.wy, v.wz = m.wx + 0.5 * gained_x, m.wy + 0.5 * gained_y, m.wz + 0.5 * gained_z
         solved = integrate_rotation(body, v, dt)
         x, y, z = inverse_inertia_times(body, x, y, z)
-        off = (x - gained_x) ** 2 + (y - gained_y) ** 2 + (z - gained_z) ** 2
+        off_x, off_y, off_z = x - gained_x, y - gained_y, z - gained_z
+        off = off_x * off_x + off_y * off_y + off_z * off_z
         gained = gained_x * gained_x + gained_y * gained_y + gained_z * gained_z
         if off > LIKE * LIKE * gained:
             body.qw, body.qx, body.qy, body.qz = w, i, j, k

@@ -18,6 +18,7 @@ from numba.core.datamodel.packer import ArgPacker
 from numba.core.errors import WarningsFixer  # type: ignore[attr-defined]
 from numba.core.postproc import PostProcessor
 
+from .instruction_variables import variables_of
 from .kernel_typing import propagate
 from .single_assignment import canonical, run_ssa
 
@@ -35,39 +36,6 @@ if not (hasattr(_instruction, "_rec_list_vars") and hasattr(_warnings, "catch_wa
     raise ImportError("numba lists variables or catches warnings in another way")
 # For `with` and for dictionaries, which no kernel has.
 NEEDLESS_PEEPHOLES = "peep_hole_delete_with_exit", "peep_hole_fuse_dict_add_updates"
-_VARIABLE, _INSTRUCTION, _ROW, _NAMED, _OTHER = range(5)
-_kinds: dict[type, int] = {}
-
-
-def _kind_of(value: type) -> int:
-    """Return what holds variables of the intermediate representation; remembered by class."""
-    families = enumerate((ir.Var, ir.Inst, (list, tuple), dict))
-    kind = next((kind for kind, classes in families if issubclass(value, classes)), _OTHER)  # type: ignore[arg-type]
-    _kinds[value] = kind
-    return kind
-
-
-def variables_of(_: Any, value: Any) -> list[Any]:
-    """Return the variables in a value, in the order of numba's own `Inst._rec_list_vars`."""
-    found: list[Any] = []
-    waiting = [iter((value,))]
-    while waiting:
-        for each in waiting[-1]:
-            kind = _kinds.get(type(each))
-            if kind is None:
-                kind = _kind_of(type(each))
-            if kind == _OTHER:
-                continue
-            if kind == _VARIABLE:
-                found.append(each)
-            elif kind == _INSTRUCTION:
-                found += each.list_vars()
-            else:
-                waiting.append(iter(each.values() if kind == _NAMED else each))
-                break
-        else:
-            waiting.pop()
-    return found
 
 
 def _as_they_come(*_: Any, **__: Any) -> AbstractContextManager[None]:
@@ -116,7 +84,7 @@ def shortened() -> Iterator[None]:
     _interpreter.post_process = look_over
     _inferer.propagate, _ssa._run_ssa = propagate_types, run_ssa
     _postproc.run = run
-    _instruction._rec_list_vars = variables_of
+    _instruction._rec_list_vars = staticmethod(variables_of)
     _warnings.catch_warnings = _as_they_come
     explained, begun, ended = _typeinfer.new_error_context, _events.start_event, _events.end_event
     _typeinfer.new_error_context = _as_they_come
@@ -188,7 +156,12 @@ def with_signature(function: Any) -> Any:
     return function
 
 
-_packers: dict[tuple[Any, tuple[Any, ...]], ArgPacker] = {}
+def _codes(kinds: Any) -> tuple[int, ...]:
+    """Return numba's numbers of types: to hash a tuple of arrays is to hash all its fields."""
+    return tuple([kind._code for kind in kinds])
+
+
+_packers: dict[tuple[Any, tuple[int, ...]], ArgPacker] = {}
 
 
 def packer_of(models: Any) -> Callable[[Any], ArgPacker]:
@@ -198,10 +171,28 @@ def packer_of(models: Any) -> Callable[[Any], ArgPacker]:
     """
 
     def packer(kinds: Any) -> ArgPacker:
-        key = models, tuple(kinds)
+        key = models, _codes(kinds)
         found = _packers.get(key)
         if found is None:
             found = _packers[key] = ArgPacker(models, kinds)
         return found
 
     return packer
+
+
+_function_types: dict[tuple[Any, ...], Any] = {}
+
+
+def function_types_of(context: Any) -> Callable[[Any, Any], Any]:
+    """Return what gives LLVM's type of a function, for which numba asks twice a call."""
+    conventions, models = context.call_conv, context.data_model_manager
+    made = conventions.get_function_type
+
+    def function_type(returns: Any, arguments: Any) -> Any:
+        key = models, type(conventions), returns._code, _codes(arguments)
+        found = _function_types.get(key)
+        if found is None:
+            found = _function_types[key] = made(returns, arguments)
+        return found
+
+    return function_type

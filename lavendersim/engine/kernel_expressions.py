@@ -16,8 +16,10 @@ from numba.core.datamodel.registry import default_manager
 from numba.core.lowering import Lower
 
 from . import field_places
+from .extremes import EXTREMES, extreme, extreme_of
 from .field_places import FIELDS, composed_name
 from .light_values import pointing_to, slot
+from .matrix_cells import cell_at, is_cell
 from .memory_references import are_rows, is_memory, item
 from .range_loops import ITERATOR, RANGE, begun, limits, next_of
 
@@ -150,6 +152,8 @@ class ShortExpressions(Lower):
     def row(self, resty: Any, expr: Any) -> Any:
         """Return a row of an array, a record or a number; a negative index counts from the end."""
         kind, index = self.typeof(expr.value.name), self.plain(expr.index.name)
+        if self.has_cell(resty, kind, index):
+            return self.builder.load(self.cell_of(expr.value.name, expr.index.name))
         if index not in INDICES or not self.has_row(resty, kind):
             return None
         at = self.loadvar(expr.index.name)
@@ -165,6 +169,18 @@ class ShortExpressions(Lower):
             return False
         plain = isinstance(row, (types.Record, *map(type, FIELDS)))
         return plain and not self.context.enable_boundscheck
+
+    def has_cell(self, number: Any, kind: Any, index: Any) -> bool:
+        """Whether a type is an array of such numbers that an index reaches one by one."""
+        if self.context.enable_boundscheck or not is_cell(kind, index):
+            return False
+        return bool(kind.dtype == number)
+
+    def cell_of(self, array: str, index: str) -> Any:
+        """Return where the cell of an array is that a variable names."""
+        kind, along = self.typeof(array), self.typeof(index)
+        values, models = (self.loadvar(array), self.loadvar(index)), self.context.data_model_manager
+        return cell_at(self.builder, models, kind, *values, along)
 
     def row_at(self, name: str, at: Any, *, signed: bool) -> Any:
         """Return where a row of an array is; a signed index may count from the end."""
@@ -191,7 +207,15 @@ class ShortExpressions(Lower):
             return self._truth(resty, expr.args[0].name)
         if kind.typing_key is range and resty == RANGE:
             return self._range(expr)
+        if kind.typing_key in EXTREMES:
+            return self._extreme(resty, kind.typing_key, expr)
         return None
+
+    def _extreme(self, resty: Any, function: Any, expr: Any) -> Any:
+        names = [each.name for each in expr.args]
+        if extreme_of(function, [self.typeof(name) for name in names]) is None:
+            return None
+        return extreme(self.builder, function, resty, [self.loadvar(name) for name in names])
 
     def _truth(self, resty: Any, name: str) -> Any:
         kind = self.plain(name)

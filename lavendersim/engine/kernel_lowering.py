@@ -23,6 +23,7 @@ from .field_places import FIELDS
 from .kernel_expressions import INDICES, WORD, ShortExpressions
 from .python_door import for_python
 from .range_loops import RANGE
+from .single_assignment import local_variables
 
 # Constants of these types are never read: what they stand for is known by their type.
 NAMES = types.Dispatcher, types.Function, types.Module, types.NumberClass, types.NamedTupleClass
@@ -65,7 +66,11 @@ class KernelLower(ShortExpressions):
         if isinstance(inst, ir.StaticSetItem) and isinstance(inst.index, int):
             return self._set_row(inst, Constant(WORD, inst.index), signed=inst.index < 0)
         if isinstance(inst, ir.SetItem):
-            index = self.plain(inst.index.name)
+            index, number = self.plain(inst.index.name), self.plain(inst.value.name)
+            if self.has_cell(number, self.typeof(inst.target.name), index):
+                cell = self.cell_of(inst.target.name, inst.index.name)
+                self.builder.store(self.loadvar(inst.value.name), cell)
+                return True
             at = self.loadvar(inst.index.name) if index in INDICES else None
             return at is not None and self._set_row(inst, at, signed=index == types.int64)
         return False
@@ -121,6 +126,10 @@ class KernelLower(ShortExpressions):
         row = self.row_at(inst.target.name, at, signed=signed)
         field_places.copy(self.builder, composed, row, self.loadvar(inst.value.name))
         return True
+
+    def _find_singly_assigned_variable(self) -> None:
+        self._singly_assigned_vars = local_variables(self.func_ir.blocks)
+        self._blk_local_varmap = {}
 
     def storevar(self, value: Any, name: str, argidx: Any = None) -> None:
         """Keep a variable's value; nothing counts references to the one before."""

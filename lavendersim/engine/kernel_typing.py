@@ -14,6 +14,8 @@ from typing import Any, Final
 
 from numba.core import errors, typeinfer, types
 
+from .extremes import EXTREMES, extreme_of
+
 _infer: Any = typeinfer
 
 
@@ -111,11 +113,12 @@ _items: dict[tuple[int, int], Any] = {}  # of what is indexed by what, by numba'
 _attributes: dict[tuple[int, str], Any] = {}  # of records and named tuples, by numba's code of both
 
 
-def quick(typingctx: Any) -> Any:
+def quick(typingctx: Any, *, direct: bool = False) -> Any:
     """Return a typing context that has the types of most that kernels do at hand.
 
     Numba asks some twenty templates for the type of every sum of two numbers, each time, and all
-    that it knows of attributes for every field.
+    that it knows of attributes for every field. direct: whether `KernelLower` makes the
+    instructions, for which numba need not compile its own functions.
     """
     quick = copy(typingctx)
 
@@ -130,6 +133,10 @@ def quick(typingctx: Any) -> Any:
         scalar = isinstance(function, types.Function) and not kws
         if not scalar or not all(isinstance(kind, _SCALARS) for kind in args):
             return typingctx.resolve_function_type(function, args, kws)
+        if direct and function.typing_key in EXTREMES:
+            found = extreme_of(function.typing_key, args)
+            if found is not None:
+                return found
         found = _resolved.get((function, args))
         if found is None:
             found = _resolved[function, args] = typingctx.resolve_function_type(function, args, kws)

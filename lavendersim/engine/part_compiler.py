@@ -31,12 +31,13 @@ from numba.core.typing.templates import make_concrete_template, signature
 
 from lavendersim.garbage import collect_recent
 
-from .compiler_shortcuts import nested, packer_of, shortened, without_algebra
+from .compiler_shortcuts import function_types_of, nested, packer_of, shortened, without_algebra
 from .field_places import composed_in, places_in
 from .kernel_lowering import KernelLowering, is_direct, names_places
 from .kernel_parts import STORE, KernelPart, key_of, symbol_of
 from .kernel_typing import quick
 from .memory_references import REFERENCES, are_rows
+from .module_text import text_of
 from .optimisation import optimise
 from .separate_code import merge, separate_code
 from .single_assignment import canonical
@@ -87,7 +88,7 @@ class PartCode(_Linking):
             for block in function.blocks
         )
         self.places = places_in(ir_module)
-        module = parse_assembly(str(ir_module))
+        module = parse_assembly(text_of(ir_module))
         module.name, module.data_layout = ir_module.name, self._codegen._data_layout
         passes = create_new_function_pass_manager()
         for add in SHORTENING:
@@ -190,7 +191,8 @@ def _prepare(state: Any, function: Any, symbol: str) -> None:
     if direct:
         context.data_model_manager = REFERENCES
     context.get_arg_packer = packer_of(context.data_model_manager)
-    state.typingctx = quick(state.typingctx)
+    context.call_conv.get_function_type = function_types_of(context)
+    state.typingctx = quick(state.typingctx, direct=direct)
 
 
 # Passes of numba's that serve closures, generators, literal arguments, array expressions and
@@ -231,8 +233,19 @@ class _Passes(PassManager):
                 state.func_ir.blocks = canonical(state.func_ir)
 
 
+_pipelines: dict[tuple[Any, ...], PassManager] = {}
+
+
 def _pipeline(state: Any) -> PassManager:
     """Return numba's pipeline for a function in nopython mode, without what no kernel needs."""
+    flags = state.flags
+    asked = flags.auto_parallel.enabled, flags.no_rewrites, flags.enable_ssa, state.func_ir is None
+    if asked not in _pipelines:
+        _pipelines[asked] = _new_pipeline(state)
+    return _pipelines[asked]
+
+
+def _new_pipeline(state: Any) -> PassManager:
     whole, pipeline = DefaultPassBuilder.define_nopython_pipeline(state), _Passes("kernel")
     for compiler_pass, description in whole.passes:
         if compiler_pass is NativeLowering:

@@ -7,13 +7,15 @@ keeps to itself.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable
 from typing import Any, Final
 
 from numba.core import ir, ssa
 from numba.core.analysis import compute_cfg_from_blocks
 from numba.core.transforms import canonicalize_cfg
+
+from .instruction_variables import variables_of
 
 _ssa: Any = ssa
 NEEDED: Final = (
@@ -106,3 +108,24 @@ def canonical(code: Any) -> Blocks:
     found: Blocks = canonicalize_cfg(blocks)
     code.func_id.canonical_jumps = jumps if len(found) == len(blocks) else None
     return found
+
+
+def local_variables(blocks: Blocks) -> set[str]:
+    """Return the variables that are assigned once, and used in that block alone, after it.
+
+    They take no room in memory. Numba finds them by what each block defines and uses, which it
+    asks of every instruction twice.
+    """
+    assigned: Counter[str] = Counter()
+    carried: set[str] = set()  # used in a block where they are not assigned before
+    for block in blocks.values():
+        here: set[str] = set()
+        for inst in block.body:
+            if type(inst) is ir.Assign:
+                target = inst.target.name
+                carried.update({each.name for each in variables_of(inst.value)} - here)
+                assigned[target] += 1
+                here.add(target)
+            else:
+                carried.update({each.name for each in variables_of(inst)} - here)
+    return {name for name, times in assigned.items() if times == 1 and name not in carried}

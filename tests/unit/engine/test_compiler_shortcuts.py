@@ -2,43 +2,13 @@
 
 import inspect
 import warnings
-from types import FunctionType
 
 import pytest
 from numba.core import ir, types
-from numba.core.compiler import run_frontend
 from numba.core.errors import NumbaWarning
 from numba.core.registry import cpu_target
 
 shortcuts = pytest.importorskip("lavendersim.engine.compiler_shortcuts")
-
-
-def _loop(rows, count, pair):
-    total = 0.0
-    for index in range(count):
-        first, second = pair
-        if rows[index] > 0.0 and not first:
-            total += min(rows[index], second, key=first)
-        rows[index] = -total
-    return {"total": total}, [rows, count], rows[1:count]
-
-
-def _with_keywords(*many, one=1):
-    if one in many:
-        return max(many, default=one), {"one": one, "many": (one, many)}
-    while one < 3:
-        one += many[0]
-    return (one, [one, one]), None
-
-
-@pytest.mark.parametrize("function", [_loop, _with_keywords])
-def test_variables_are_listed_as_numba_lists_them(function: FunctionType) -> None:
-    blocks = run_frontend(function).blocks
-    instructions = [each for block in blocks.values() for each in block.body]
-    held = [each.__dict__ for each in instructions]
-    found = [shortcuts.variables_of(None, each) for each in held]
-    assert found == [ir.Inst()._rec_list_vars(each) for each in held]
-    assert sum(len(each) > 1 for each in found) > 10
 
 
 def test_a_packer_is_made_once_for_equal_types_and_flattens_as_a_new_one() -> None:
@@ -49,6 +19,16 @@ def test_a_packer_is_made_once_for_equal_types_and_flattens_as_a_new_one() -> No
     assert one is again
     assert one.argument_types == context.get_arg_packer((record, types.int64)).argument_types
     assert packer((types.int64, record)).argument_types != one.argument_types
+
+
+def test_the_type_of_a_function_is_made_once_and_is_numbas() -> None:
+    context = cpu_target.target_context
+    rows = types.Array(types.float64, 1, "C")
+    of = shortcuts.function_types_of(context)
+    one, again = of(types.float64, (rows, types.int64)), of(types.float64, [rows, types.int64])
+    assert one is again
+    assert one == context.call_conv.get_function_type(types.float64, (rows, types.int64))
+    assert of(types.int64, (rows, types.int64)) != one
 
 
 def test_numba_has_its_own_back_afterwards() -> None:

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 from numba.core import ssa
 from numba.core.compiler import run_frontend
+from numba.core.lowering import Lower
 from numba.core.transforms import canonicalize_cfg
 
 single_assignment = pytest.importorskip("lavendersim.engine.single_assignment")
@@ -53,6 +54,19 @@ def test_each_assignment_has_the_name_that_numba_gives(function):
     assert found == _text(ssa._run_ssa(run_frontend(function).blocks))
     names = [row.split(" = ")[0] for _, rows in found for row in rows if " = " in row]
     assert len(names) == len(set(names))
+
+
+@pytest.mark.parametrize("renamed", [False, True])
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_local_variables_are_those_that_numba_keeps_in_no_memory(function, renamed):
+    code = run_frontend(function)
+    if renamed:
+        code.blocks = single_assignment.run_ssa(code.blocks)
+    lower = object.__new__(Lower)
+    lower.func_ir, lower.blocks = code, code.blocks
+    lower._find_singly_assigned_variable()
+    assert single_assignment.local_variables(code.blocks) == lower._singly_assigned_vars
+    assert lower._singly_assigned_vars
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)
