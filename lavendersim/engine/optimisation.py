@@ -24,7 +24,7 @@ LEVEL: Final = 1
 # a step with 60, 6.0 with 200, and a pile of balls 3 % less with 260 than with 200; from 320 on
 # modules take twice the time, for nothing.
 SHORT: Final = 260
-SELDOM_SHORT: Final = 60  # of what is seldom called: half as long, and compiled in half the time
+SELDOM_SHORT: Final = 42  # of what is seldom called: half as long, and compiled in half the time
 _SYMBOL = r'@("[^"]*"|[-\w.$]+)\('
 _CALL = re.compile(r"call [^@\n]*" + _SYMBOL)
 _FUNCTION = re.compile(r"^define [^@\n]*" + _SYMBOL + r".*?\n(.*?)^}", re.MULTILINE | re.DOTALL)

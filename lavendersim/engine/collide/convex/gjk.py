@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ...compile import inner, kernel, once
+from ...compile import inner, kernel, once, separate
 from ...vectors import Vec3, dot, length, negative, position
 from ..records import UNBOUNDED, copy_vertex
 from ..scratch import NEW_VERTEX
@@ -139,4 +139,4 @@ def make_gjk(spec):
         write_separation(scratch.separation[0], v, sqrt(squared), vertices, weights, count)
         return APART, count
 
-    return kernel(gjk, spec)
+    return separate(kernel(gjk, spec), spec)
