@@ -81,7 +81,7 @@ FAMILIES = (
         (
             *("time/turntable", "time/ball_on_turntable", "time/slope", "time/disc_that_nods"),
             *("time/heavy_top", "time/flush_seams", "time/box_between_walls", "scenes/rod_end"),
-            # With controls by older laws, which share their plans, too: at the surface and captured.
+            # With controls by older laws, which share plans, too: at the surface, captured.
             *("time/rolling_over_seams", "time/bodies_that_meet_within_a_step"),
             "time/striking_across_a_gap",
             *("scenes/rest", "scenes/frictional_rod", "language/rolling_bodies"),

@@ -1,4 +1,4 @@
-"""Every config of configs/time says how its error goes with the timestep, shows it, and has a control.
+"""Configs of configs/time say how their errors go with the timestep, show it, and have controls.
 
 docs/results.md lists them, each with an order or as exact, and the reason.
 """
