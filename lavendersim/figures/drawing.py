@@ -14,6 +14,7 @@ from lavendersim.figures.style import DARK, GREY, Look
 FEW_TICKS = 8
 MANY_MARKERS = 50  # on one line: more would hide it, so every so manyth is drawn
 TWO_DECADES = 100.0
+LABEL_WIDTH = 0.07  # of the axis: ticks that are nearer would have labels over each other
 
 
 def describe(
@@ -86,13 +87,20 @@ def draw_ideal(
 
 
 def ticks_at_values(axes: Any, values: Any) -> None:
-    """On a logarithmic x axis that spans little, put the ticks on the swept values themselves."""
+    """On a logarithmic x axis that spans little, put the ticks on the swept values themselves.
+
+    One that is too near the one before for two labels has none.
+    """
     unique = np.unique(values)
     if axes.get_xscale() != "log" or len(unique) > FEW_TICKS:
         return
     if unique[0] <= 0 or unique[-1] / unique[0] >= TWO_DECADES * 4:
         return
-    axes.xaxis.set_major_locator(FixedLocator(list(unique)))
+    shown = [unique[0]]
+    for value in unique[1:]:
+        if value / shown[-1] >= (unique[-1] / unique[0]) ** LABEL_WIDTH:
+            shown.append(value)
+    axes.xaxis.set_major_locator(FixedLocator(shown))
     axes.xaxis.set_major_formatter(lambda value, _: _few_digits(value))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_minor_formatter(NullFormatter())

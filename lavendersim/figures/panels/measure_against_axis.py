@@ -73,6 +73,7 @@ def draw_panel(
     """Draw one panel onto the axes."""
     shown = [cell for cell in cells if panel.axis in cell.coordinates]
     drawn: set[tuple[float, ...]] = set()
+    places_of_all: list[float] = []
     all_series = series_of(shown, panel.series, panel.series_label)
     looks = looks_of(all_series)
     for index, series in enumerate(all_series):
@@ -97,11 +98,13 @@ def draw_panel(
                 draw_ideal(axes, places * panel.x_factor, ideal * panel.factor, label)
                 drawn.add(key)
         draw_band(axes, band, looks[index], series.label, size=marker_size(index, len(all_series)))
-        ticks_at_values(axes, band.places)
+        places_of_all += list(band.places)
         if index == 0:
             _draw_orders(axes, panel.orders, band)
             if panel.proportions and len(band.places):
                 _draw_proportions(axes, panel.proportions, band.places)
+    if places_of_all:
+        ticks_at_values(axes, places_of_all)
     for index, onset in enumerate(panel.onsets):
         stations = along_axis(shown, values.of(panel.measure), panel.axis, onset.reduce)
         place = first_rise(*stations, onset.level / panel.factor) * panel.x_factor

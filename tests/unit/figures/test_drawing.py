@@ -44,3 +44,11 @@ def test_ticks_at_swept_values_are_short_and_plain(value: float, text: str) -> N
     axes.set_xscale("log")
     ticks_at_values(axes, np.array([value, 2.0 * value]))
     assert axes.xaxis.get_major_formatter()(value, 0) == text
+
+
+def test_ticks_whose_labels_would_overlap_are_left_out() -> None:
+    axes = Figure().add_subplot()
+    axes.set_xscale("log")
+    # log(1.04/1)/log(4) is 3 % of the axis, log(2/1.04)/log(4) 47 %.
+    ticks_at_values(axes, [0.5, 1.0, 1.04, 2.0])
+    assert list(axes.xaxis.get_majorticklocs()) == [0.5, 1.0, 2.0]
