@@ -59,7 +59,7 @@ NORMAL, ARM_A, ARM_B = range(0, 3 * AXIS, AXIS)
 NORMAL_ALONE = PRESSED + 1
 YIELDING = 1  # gamma along the surface, the last field of all
 # Groups of a run, and sweeps that follow each other run by run (`sweep`).
-RUN, TOGETHER = 64, 8
+RUN, TOGETHER = 64, 4
 LINE = 8  # numbers of a line of the processor's cache
 # Pieces that a team may be dealt out, at most, for each contact and beside: see `team_sweeps`.
 MOST_PIECES, FEWEST_PIECES = 8, 1024
