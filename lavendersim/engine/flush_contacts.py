@@ -93,22 +93,23 @@ def make_drop_flush(spec: Spec) -> Any:
         if is_movable(state.bodies[i]):
             entry = lists.first[i]
             while entry >= 0:
-                other = contacts[entry // 2]
+                c = entry // 2
+                other = lists.listed[c]
                 entry = lists.following[entry]
-                if other.pair == contact.pair or other.phi > params.slop + TOUCHING:
+                if other.pair == contact.pair:
                     continue
                 if joins:
                     if state.pairs[other.pair].kind < ROPE:  # it is no face
                         continue
                 if passes(state, contact, other, workspace, params, least):
-                    flush, other.passed_on = True, 1
+                    flush, contacts[c].passed_on = True, 1
         return flush
 
     rests_beside = kernel(rests_beside, spec)
 
     def drop_flush(state, count, workspace, params):
         bodies, contacts, motion = state.bodies, state.contacts, state.motion
-        listed = False
+        listed, dropped = False, False
         for c in range(count):
             contact = contacts[c]
             row = state.pairs[contact.pair]
@@ -129,13 +130,14 @@ def make_drop_flush(spec: Spec) -> Any:
                 least = slowest(contact, bodies, motion)
                 if contact.rate < -least or ajar:
                     if not listed:
-                        list_contacts(contacts, count, workspace.contact_lists)
+                        touching = params.slop + TOUCHING
+                        list_contacts(contacts, count, touching, workspace.contact_lists)
                         listed = True
                     flush = rests_beside(state, contact, contact.a, workspace, params, least)
                     if rests_beside(state, contact, contact.b, workspace, params, least):
                         flush = True
                     if flush:
-                        contact.waits = 1
-        return keep_present(contacts, count)
+                        contact.waits, dropped = 1, True
+        return keep_present(contacts, count) if dropped else count
 
     return kernel(drop_flush, spec)

@@ -25,7 +25,7 @@ _FUNCTION = ir.FunctionType(
 
 
 # What a solve writes of a contact.
-_IMPULSES = ("lambda_n", "lambda_1", "lambda_2", "psi_n", "psi_1", "psi_2", "push")
+_IMPULSES = ("lambda_n", "lambda_1", "lambda_2", "psi_n", "psi_1", "psi_2")
 
 
 def _emit(context: Any, builder: Any, array_type: Any, args: Any, places: Any) -> Any:
@@ -49,6 +49,26 @@ def prefetch(typing, records, at):
         return _emit(context, builder, sig.args[0], args, range(0, size, LINE))
 
     return signature(types.void, records, at), emit
+
+
+def make_prefetch_span(names: tuple[str, ...]) -> Any:
+    """Return `kernel(records, at)`: ask for what of records[at] lies between these fields.
+
+    Of those that the records have; at: a row, which is not looked at.
+    """
+
+    @primitive
+    def prefetch_span(typing, records, at):
+        def emit(context, builder, sig, args):
+            record = sig.args[0].dtype
+            places = [record.offset(name) for name in names if name in record.fields]
+            first, last = min(places), max(places)
+            lines = [*range(first, last, LINE), last]
+            return _emit(context, builder, sig.args[0], args, lines)
+
+        return signature(types.void, records, at), emit
+
+    return prefetch_span
 
 
 @primitive

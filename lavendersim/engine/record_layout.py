@@ -33,6 +33,23 @@ from .records import (
 )
 from .spec import Spec
 
+# Of contacts: what passes over all of them read, behind the base and before all else, those of one
+# pass side by side. A record takes a dozen lines of the processor's cache, and a scene larger than
+# the caches has them from memory in every pass.
+READ_BY_ALL = (
+    # what begins where the last step ended
+    "matched",
+    # sweeps, what prepares them, the residual
+    *("mu", "t1x", "t1y", "t1z", "t2x", "t2y", "t2z", "rax", "ray", "raz", "rbx", "rby", "rbz"),
+    *("k_n1", "k_n2", "i_11", "i_12", "i_22", "k_t", "lambda_1", "lambda_2"),
+    # the projection
+    *("correction", "push", "inv_k_n"),
+    # what bodies do in the step
+    *("lasts", "is_impact", "tau", "dv_n", "begin_n", "middle_n", "separation_speed"),
+    # the order of impacts
+    *("waits", "located", "rate", "due", "passed_on"),
+)
+
 Record = Literal["body", "velocity", "pair", "contact", "link", "drive", "cache"]
 
 
@@ -80,7 +97,9 @@ def contact_dtype(spec: Spec) -> np.dtype:
     from .solvers.catalogue import SOLVERS  # late: numba
 
     solver = SOLVERS[spec.solver].contact_fields
-    return dtype(CONTACT, _of_effects(spec, "contact"), dependent, solver)
+    added = [*_of_effects(spec, "contact"), *dependent, *solver]
+    read = {name: place for place, name in enumerate(READ_BY_ALL)}
+    return dtype(CONTACT, sorted(added, key=lambda field: read.get(field[0], len(read))))
 
 
 @cache

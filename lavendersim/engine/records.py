@@ -141,13 +141,13 @@ CONTACT: Final[list[Field]] = [
     ("ny", F8),
     ("nz", F8),
     ("phi", F8),  # signed separation, negative inside [m]
+    ("lambda_n", F8),  # accumulated impulse on B along n, A gets the opposite [N s]
     ("inv_m_a", F8),
     ("inv_m_b", F8),
     ("k_n", F8),  # inverse effective mass along n [1/kg]
     ("v_n_pre", F8),  # normal velocity of B relative to A before the solve [m/s]
     ("target", F8),  # b + b_rest: the row asks v_n + target + gamma lambda >= 0 [m/s]
     ("inv_k", F8),  # 1/(k_n + gamma) [kg]
-    ("lambda_n", F8),  # accumulated impulse on B along n, A gets the opposite [N s]
 ]
 
 # A point ahead that a part of a step has no row of.

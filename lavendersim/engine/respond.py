@@ -66,6 +66,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     shuffle: Any = ordering.make_shuffle(spec) if shuffles else None
     solve = make_solve(spec)
     predicts, predict_impacts = made_once(spec, "predict_impacts")
+    _, foresee_impacts = made_once(spec, "foresee_impacts")
     reverses, reverse_slip = made_once(spec, "reverse_slip")
     reverses = reverses and predicts  # idle where no law of impacts is beside it
     warms, match_contacts = made_once(spec, "match")
@@ -120,10 +121,17 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             if beside:
                 predicted = predicted and workspace.beside.impacts[0] == 1
         # What is worked out of a row by itself is so while the row is near: of a scene larger than
-        # the caches rows come from memory once. Impacts are predicted from all of them.
-        begin, together = 0, count
-        if not predicted:
-            together = NEAR
+        # the caches rows come from memory once. Impacts are predicted from all of them, and what
+        # slips back is asked of their targets.
+        meets = False
+        if predicts:
+            if predicted:
+                for i in range(motion.shape[0]):
+                    motion[i].tau = params.dt
+        begin, together = 0, NEAR
+        if reverses:
+            if predicted:
+                together = count
         while begin < count:
             end = min(begin + together, count)
             for c in range(begin, end):
@@ -143,7 +151,11 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                         contacts[c].e = 0.0
             if predicts:
                 if predicted:
-                    predict_impacts(contacts, count, motion, params)
+                    if foresee_impacts(contacts, begin, end, count, motion, params):
+                        meets = True
+                    if reverses:
+                        if meets:
+                            predict_impacts(contacts, count, motion, params)
             if reverses:
                 for c in range(begin, end):
                     contact = contacts[c]
@@ -161,6 +173,9 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
                             contact.parting_x, contact.parting_y = parting.x, parting.y
                             contact.parting_z = parting.z
             begin = end
+        if predicts and not reverses:
+            if meets:
+                predict_impacts(contacts, count, motion, params)
         if centred:
             moving = lasts and is_moving(bodies, motion)
             if moving:

@@ -129,7 +129,9 @@ class Hooks:
     order_impacts: Maker | None = None  # (state, count, workspace, params, counters): see there
     first_stop: Maker | None = None  # (state, count, params, counters) -> when sliding stops [s]
     note_rate: Maker | None = None  # (body, velocity, motion, dt), once a part is solved
-    predict_impacts: Maker | None = None  # (contacts, count, motion, params), before the solve
+    # (contacts, begin, end, count, motion, params) -> whether any is foreseen, of rows begin to end
+    foresee_impacts: Maker | None = None
+    predict_impacts: Maker | None = None  # (contacts, count, motion, params), where one is
     reverse_slip: Maker | None = None  # (contact, pair, va, vb), before the solve
     slowed_n: Maker | None = None  # (contact, body_a, body_b) -> what of dv_n resists motion [m/s]
     keep_free: Maker | None = None  # (velocities, free), before any contact impulse acts

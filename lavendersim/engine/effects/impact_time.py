@@ -106,7 +106,7 @@ def make_foresee(spec):
 
 
 def make_mark_carried(spec):
-    """Return `kernel(contacts, count, motion, params)`: which bodies do not fly after an impact.
+    """Return `kernel(contact, motion, params)`: which bodies do not fly after an impact.
 
     They lie on what they touch as the step begins, or stay with what they met (`motion.carried`).
     """
@@ -115,32 +115,53 @@ def make_mark_carried(spec):
 
     bilateral = row_terms(spec).bilateral
 
-    def mark_carried(contacts, count, motion, params):
-        for i in range(motion.shape[0]):
-            motion[i].carried = 0
-        for c in range(count):
-            contact = contacts[c]
-            how = 0
-            if contact.is_impact == IMPACT:
-                if contact.separation_speed == 0.0:
-                    how = AFTERWARDS
-            elif contact.phi <= params.slop:
-                how = ALWAYS
-            if bilateral:
-                if contact.bilateral == 1:  # it lies on nothing
-                    continue
-            a, b = motion[contact.a], motion[contact.b]
-            if contact.inv_m_a > 0.0:
-                a.carried = max(a.carried, how)
-            if contact.inv_m_b > 0.0:
-                b.carried = max(b.carried, how)
+    def mark_carried(contact, motion, params):
+        how = 0
+        if contact.is_impact == IMPACT:
+            if contact.separation_speed == 0.0:
+                how = AFTERWARDS
+        elif contact.phi <= params.slop:
+            how = ALWAYS
+        if bilateral:
+            if contact.bilateral == 1:  # it lies on nothing
+                return
+        a, b = motion[contact.a], motion[contact.b]
+        if contact.inv_m_a > 0.0:
+            a.carried = max(a.carried, how)
+        if contact.inv_m_b > 0.0:
+            b.carried = max(b.carried, how)
 
     return kernel(mark_carried, spec)
+
+
+def make_foresee_impacts(spec):
+    """Return `kernel(contacts, begin, end, count, motion, params) -> whether any is foreseen`.
+
+    When these rows of `count` meet, and each of their bodies first does: the taus of `motion`,
+    which are dt before.
+    """
+    foresee = make_foresee(spec)
+
+    def foresee_impacts(contacts, begin, end, count, motion, params):
+        meets = False
+        for c in range(begin, end):
+            contact = contacts[c]
+            foresee(contact, params, count == 1)
+            if contact.tau < params.dt:
+                meets = True
+                if contact.inv_m_a > 0.0:
+                    motion[contact.a].tau = min(motion[contact.a].tau, contact.tau)
+                if contact.inv_m_b > 0.0:
+                    motion[contact.b].tau = min(motion[contact.b].tau, contact.tau)
+        return meets
+
+    return kernel(foresee_impacts, spec)
 
 
 def make_predict_impacts(spec):
     """Return `kernel(contacts, count, motion, params)`: targets of impacts and of what is near.
 
+    Of rows that are foreseen, where any meets.
     Of a body's contacts the first to meet is the impact, with those that meet at the same place
     within the slop; later ones are treated from that time on.
     """
@@ -151,7 +172,7 @@ def make_predict_impacts(spec):
 
     bilateral = row_terms(spec).bilateral
     share_impacts: Any = make_share_impacts(spec) if bilateral else None
-    foresee, springs = make_foresee(spec), row_terms(spec).elastic
+    springs = row_terms(spec).elastic
     falls, _ = made_once(spec, "restitution_at")
     mark_carried = make_mark_carried(spec)
 
@@ -172,22 +193,11 @@ def make_predict_impacts(spec):
     gap_at = kernel(gap_at, spec)
 
     def predict_impacts(contacts, count, motion, params):
-        dt, meets = params.dt, False
-        for i in range(motion.shape[0]):
-            motion[i].tau = dt
-        for c in range(count):
-            contact = contacts[c]
-            foresee(contact, params, count == 1)
-            if contact.tau < dt:
-                meets = True
-                if contact.inv_m_a > 0.0:
-                    motion[contact.a].tau = min(motion[contact.a].tau, contact.tau)
-                if contact.inv_m_b > 0.0:
-                    motion[contact.b].tau = min(motion[contact.b].tau, contact.tau)
-        if not meets:
-            return
+        dt = params.dt
         if bilateral:
             share_impacts(contacts, count, motion)
+        for i in range(motion.shape[0]):
+            motion[i].carried = 0
         for c in range(count):
             contact = contacts[c]
             if contact.tau < dt:
@@ -196,7 +206,7 @@ def make_predict_impacts(spec):
                     if falls:
                         contact.e_impact = contact.e if contact.separation_speed > 0.0 else 0.0
                     contact.target = -(contact.separation_speed + contact.after)
-        mark_carried(contacts, count, motion, params)
+            mark_carried(contact, motion, params)
         for c in range(count):
             contact = contacts[c]
             if springs:
@@ -235,5 +245,5 @@ EFFECT = Effect(
             ("is_impact", "i8"),  # IMPACT or AHEAD (`integrate`): what sets its target; else 0
         ],
     ),
-    hooks=Hooks(predict_impacts=make_predict_impacts),
+    hooks=Hooks(foresee_impacts=make_foresee_impacts, predict_impacts=make_predict_impacts),
 )

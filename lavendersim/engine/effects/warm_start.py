@@ -42,8 +42,6 @@ def make(spec):
         scale = params.dt / counters.cached_dt
         nearest_allowed = params.cache_distance * params.cache_distance
         left = count
-        for c in range(count):
-            contacts[c].matched = 0
         # Features first, for all: a new point must not take the impulse of one that persists.
         for by_feature in (True, False):
             if left == 0:
@@ -51,7 +49,9 @@ def make(spec):
             first = 0
             for c in range(count):
                 contact = contacts[c]
-                if contact.matched == 1:
+                if by_feature:
+                    contact.matched = 0
+                elif contact.matched == 1:
                     continue
                 while first < counters.cached and cache[first].key < contact.key:
                     first += 1

@@ -1,4 +1,4 @@
-"""Every contact stands once in the list of each of its bodies, and nowhere else."""
+"""Every contact that touches stands once in the list of each of its bodies, and nowhere else."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ import pytest
 from lavendersim.engine.contact_lists import allocate_contact_lists, make_list_contacts
 from lavendersim.engine.spec import Spec
 
-CONTACT = np.dtype([("a", "i8"), ("b", "i8")])
+READ = ("pair", "a", "b", "nx", "ny", "nz")
+CONTACT = np.dtype([(name, "f8" if name[0] == "n" else "i8") for name in READ] + [("phi", "f8")])
+WIDEST = 0.3
 BODIES, ROOM = 7, 40
 
 
@@ -30,7 +32,14 @@ def test_lists_have_the_contacts_of_each_body(count: int) -> None:
         contacts = np.recarray(ROOM, CONTACT)
         contacts.a = rng.integers(0, BODIES, ROOM)
         contacts.b = (contacts.a + rng.integers(1, BODIES, ROOM)) % BODIES
-        list_contacts(contacts, count, lists)
+        contacts.pair = rng.permutation(ROOM)
+        contacts.nx, contacts.ny, contacts.nz = rng.normal(size=(3, ROOM))
+        contacts.phi = rng.choice([-0.1, WIDEST, 1.001 * WIDEST, 2.0], ROOM)
+        list_contacts(contacts, count, WIDEST, lists)
+        near = contacts.phi[:count] <= WIDEST
         for body in range(BODIES):
             own = (contacts.a[:count] == body) | (contacts.b[:count] == body)
-            assert listed(lists, body) == np.flatnonzero(own).tolist()
+            assert listed(lists, body) == np.flatnonzero(own & near).tolist()
+        for name in READ:
+            copied, own = lists.listed[name][:count], contacts[name][:count]
+            np.testing.assert_array_equal(copied[near], own[near])

@@ -81,7 +81,8 @@ class Scene(NamedTuple):
         for contact in state.contacts:
             contact.rate = APPROACH(contact, state.bodies, state.motion)
         workspace = SimpleNamespace(
-            collision=records(allocate_scratch(None)), contact_lists=allocate_contact_lists(3, 2)
+            collision=records(allocate_scratch(None)),
+            contact_lists=records(allocate_contact_lists(3, 2)),
         )
         return state, workspace
 

@@ -47,6 +47,7 @@ WORKED_IN = {
     "impact_order": {
         ".trial.bodies": 4, ".trial.velocities": 2, ".trial.contact": 1,
         ".contact_lists.first": BODIES, ".contact_lists.following": 2 * CAPACITY,
+        ".contact_lists.listed": CAPACITY,
     },
     "contact_midpoint": {
         ".middle.poses": BODIES, ".middle.free": BODIES, ".middle.lead": BODIES,

@@ -8,14 +8,20 @@ import numba
 import numpy as np
 import pytest
 
-from lavendersim.engine.prefetch import LINE, prefetch, prefetch_impulses
+from lavendersim.engine.prefetch import LINE, make_prefetch_span, prefetch, prefetch_impulses
 
 FIELDS = [(f"f{k}", "f8") for k in range(20)]
 # impulses at bytes 0, 160 and 168: two lines of a record of 176 bytes, which has three
 RECORD = np.dtype([("lambda_n", "f8"), *FIELDS[:19], ("lambda_1", "f8"), ("push", "f8")])
 
 
-@pytest.mark.parametrize(("ask", "lines"), [(prefetch, 3), (prefetch_impulses, 2)])
+# From byte 40 to byte 160, which a record has in three lines at most; of the absent field nothing.
+ask_between = make_prefetch_span(("f4", "lambda_1", "absent"))
+
+
+@pytest.mark.parametrize(
+    ("ask", "lines"), [(prefetch, 3), (prefetch_impulses, 2), (ask_between, 3)]
+)
 def test_lines_are_asked_for_and_nothing_else_happens(ask, lines: int) -> None:
     assert RECORD.itemsize == 176 <= 3 * LINE
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Any
 
 from ...compile import kernel
-from ...prefetch import AHEAD, prefetch_impulses
 from ...spec import Spec
 from ...team import PUSH as PUSH_TASK
 from ..solver import ContactSystem
@@ -19,11 +18,10 @@ from .lane_memory import (
     put_one,
     take_bodies,
     take_eight,
-    take_one,
     take_triples,
 )
 from .lanes import WIDTH, greater, lane, magnitude, positive, total, zeros
-from .layout import ARM_A, ARM_B, NORMAL, PER_MASS_A, PER_MASS_B, make_place
+from .layout import ARM_A, ARM_B, NORMAL, PER_MASS_A, PER_MASS_B
 from .packing import make_pack_rows, make_put_arms, make_put_geometry, make_unpack_bodies
 from .team_sweeps import make_share_sweep
 
@@ -93,12 +91,12 @@ def make_push_apart(spec: Spec) -> Any:
     """Return `kernel(system, packed, pseudo, sweeps) -> sweeps made`.
 
     Set are a contact's `correction` [m], `push` [kg m] and `inv_k_n` [kg]; the pseudo-velocities
-    [m], [rad] are 0. sweeps: at most.
+    [m], [rad] are 0. sweeps: at most. What contacts push is needed by nobody afterwards: it stays
+    in the packed rows.
     """
     pack = make_pack_rows(spec, True, _make_pack_normal(spec), PUSHED)
     unpack_bodies = make_unpack_bodies(spec)
     push = make_share_sweep(spec, make_push_groups(spec), PUSH_TASK)
-    place = make_place(spec, True, PUSHED)
 
     def push_apart(system, packed, pseudo, sweeps):
         contacts, order, bodies = system.contacts, system.order, system.bodies
@@ -108,10 +106,6 @@ def make_push_apart(spec: Spec) -> Any:
             made += 1
             if not push(packed, slots) > 0.0:  # nor would anything in the sweeps that are left
                 break
-        for k in range(system.count):
-            prefetch_impulses(contacts, order[min(k + AHEAD, system.count - 1)])
-            pushed = take_one(packed.rows, place(packed.slot[k]) + PUSH * WIDTH)
-            contacts[order[k]].push = pushed
         unpack_bodies(bodies, pseudo, packed)
         return made
 

@@ -6,7 +6,7 @@ from math import sqrt
 from typing import Any
 
 from ...compile import inner, kernel
-from ...prefetch import AHEAD, prefetch, prefetch_impulses
+from ...prefetch import AHEAD, make_prefetch_span, prefetch_impulses
 from ...rotation import inverse_inertia_times
 from ...row_terms import row_terms
 from ...spec import Spec
@@ -16,6 +16,9 @@ from .lane_memory import STRIDE, put_one, take_one
 from .lanes import WIDTH
 from .layout import AXIS, HEAD, RUN, make_place
 from .team_sweeps import make_find_stages
+
+# The first and the last field of a record that packing may read (`record_layout.READ_BY_ALL`).
+PACKED = "a", "inv_k", "lambda_2", "inv_k_n"
 
 
 @inner
@@ -156,6 +159,7 @@ def make_pack_rows(spec: Spec, eight: bool, pack_contact: Any, fields: int) -> A
     pack_contact: kernel(contact, velocities, rows, at, factor), writes the fields of one.
     """
     pack_bodies = _make_pack_bodies(spec)
+    prefetch = make_prefetch_span(PACKED)
     place = make_place(spec, eight, fields)
 
     def fill(packed, begin, end):

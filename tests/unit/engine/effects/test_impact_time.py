@@ -15,6 +15,7 @@ from plain_facts import facts, one_row, pair_facts
 from lavendersim.engine.effects.impact_time import (
     EFFECT,
     make_foresee,
+    make_foresee_impacts,
     make_mark_carried,
     make_predict_impacts,
 )
@@ -97,10 +98,12 @@ def test_a_fast_plastic_impact_stays_and_a_fast_short_flight_is_plastic() -> Non
 
 def predicted(contacts: np.ndarray) -> np.ndarray:
     motion = np.zeros(3, dtype(MOTION))
-    motion["tau"] = -1.0
-    interpreted(make_predict_impacts(SPEC))(
+    motion["tau"] = DT
+    rows, count, bodies, params = (
         records(contacts), len(contacts), records(motion), one_row(**PARAMETERS)
-    )
+    )  # fmt: skip
+    if interpreted(make_foresee_impacts(SPEC))(rows, 0, count, count, bodies, params):
+        interpreted(make_predict_impacts(SPEC))(rows, count, bodies, params)
     return motion
 
 
@@ -141,6 +144,12 @@ def test_nothing_is_predicted_where_nothing_meets() -> None:
     assert motion["tau"].tolist() == [DT] * 3
 
 
+def mark_all(contacts: np.ndarray, motion: np.ndarray) -> None:
+    mark, bodies = interpreted(make_mark_carried(SPEC)), records(motion)
+    for contact in records(contacts):
+        mark(contact, bodies, one_row(**PARAMETERS))
+
+
 def test_bodies_are_carried_by_what_they_lie_on_or_stay_with() -> None:
     """Flies on, lies on it as the step begins, stays with what it met; the most of its contacts."""
     rows = [
@@ -150,12 +159,11 @@ def test_bodies_are_carried_by_what_they_lie_on_or_stay_with() -> None:
     for separation, expected in ((1.0, [0, 0, 0]), (0.0, [0, AFTERWARDS, 0])):
         contacts, motion = rows_of(*rows[:1]), np.zeros(3, dtype(MOTION))
         contacts["is_impact"], contacts["separation_speed"] = IMPACT, separation
-        mark = interpreted(make_mark_carried(SPEC))
-        mark(records(contacts), 1, records(motion), one_row(**PARAMETERS))
+        mark_all(contacts, motion)
         assert motion["carried"].tolist() == expected
     contacts, motion = rows_of(*rows), np.zeros(3, dtype(MOTION))
     contacts["is_impact"][0] = IMPACT
-    mark(records(contacts), 3, records(motion), one_row(**PARAMETERS))
+    mark_all(contacts, motion)
     assert motion["carried"].tolist() == [0, ALWAYS, ALWAYS]
 
 

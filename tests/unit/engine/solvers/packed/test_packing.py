@@ -34,8 +34,8 @@ EIGHTS = pytest.mark.parametrize("eight", [False, True], ids=["singly", "eights"
 def plain_places(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(packing, "put_one", lambda rows, at, value: rows.__setitem__(at, value))
     monkeypatch.setattr(packing, "take_one", lambda rows, at: rows[at])
-    for ask in ("prefetch", "prefetch_impulses"):
-        monkeypatch.setattr(packing, ask, lambda records, at: None)
+    monkeypatch.setattr(packing, "make_prefetch_span", lambda names: lambda records, at: None)
+    monkeypatch.setattr(packing, "prefetch_impulses", lambda records, at: None)
 
 
 def system_of(scene: Drawn, order: np.ndarray) -> ContactSystem:
