@@ -19,7 +19,6 @@ from lavendersim.errors import UsageError
 from .cell import CellJob, compile_kernel, failed, run_and_measure
 from .cell_outcome import CellOutcome, EndedCell
 from .forking import may_fork
-from .idle_cores import CORES
 from .progress import Compilation, Progress, Tally
 from .workers import Death, Retried, work
 
@@ -29,10 +28,6 @@ WORTH_PROCESSES = 4.0
 # Of it. A process that is forked takes 0.02 to 0.05 s to begin and to end: two save no more than
 # twice that where a core has nothing to do, and where none has they take that longer.
 FORKED: Final = 0.125
-# Times that where no core was idle lately: others gain next to nothing then, and cost a twentieth
-# of what a thousand brief cells take. What takes longer may yet meet an idle core.
-BUSY: Final = 20.0
-IDLE: Final = 0.5  # of a core, that one has
 # Cells are short whose steps and bodies make no more than this, where the one before them took no
 # more than BRIEF [s] of the processor. They are run together, so many at once: what a signal waits
 # for, and what a kill takes, is less than a second of work.
@@ -62,6 +57,7 @@ def outcomes_of(
     ordered = sorted(jobs, key=lambda job: first.get(job.plan.choices) is not job)
     # Cells that are done, what those took that were no first ones, and each of the last ones [s].
     done, taken, latest = 0, 0.0, inf
+    worth = WORTH_PROCESSES * (FORKED if may_fork() else 1.0)
     while done < len(ordered):
         left = len(ordered) - done
         job = ordered[done]
@@ -69,7 +65,7 @@ def outcomes_of(
         # where they may be enough for batches.
         is_known = done > len(first) or not _is_short(job) or left - 1 < 2 * BATCHES * workers
         each = taken / (done - len(first)) if done > len(first) else latest
-        if workers > 1 and done and done >= len(first) and is_known and each * left > _worth():
+        if workers > 1 and done and done >= len(first) and is_known and each * left > worth:
             break
         most = TOGETHER if done > len(first) and latest <= BRIEF else 1
         batch = next(_batches(ordered[done : done + most], most))
@@ -103,18 +99,12 @@ def outcomes_of(
 def _without_compiling(took: float, outcomes: Sequence[CellOutcome]) -> float:
     """Return what cells took [s] without their kernels.
 
-    How long these took is told by the wall: where others have the cores it may be more than all
-    that the processor did here. What was simulated took it something.
+    Theirs is a time of the clock: where others have the cores it may be more than all that the
+    processor did here. What was simulated took it something.
     """
     compiling = sum(one.compile_ns for one in outcomes) / 1e9
     simulating = sum(one.physics_ns + one.logging_ns for one in outcomes) / 1e9
     return max(took - compiling, min(took, simulating))
-
-
-def _worth() -> float:
-    """Return the time of the processor [s] above which cells have processes of their own."""
-    begun = FORKED if may_fork() else 1.0
-    return WORTH_PROCESSES * begun * (1.0 if CORES.idle() >= IDLE else BUSY)
 
 
 def _clock_of(job: CellJob) -> Callable[[], float]:

@@ -24,7 +24,6 @@ from lavendersim.measures import Values, Verdict, judge, meant_to_end_early
 
 from .cells_index import CellsIndex, IndexRow, write_index
 from .environment import environment
-from .idle_cores import CORES
 from .interruption import Interrupted, handled
 from .json_table import text_of
 from .leftovers import remove_leftovers
@@ -160,7 +159,6 @@ def run(
     from .cell_jobs import prepare
     from .log_size import log_space
 
-    CORES.idle()  # from here on it is asked of this run
     if not isinstance(experiment, Experiment):
         experiment = load_experiment(experiment, overrides=overrides)
     elif overrides:

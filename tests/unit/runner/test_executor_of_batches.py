@@ -154,33 +154,6 @@ def test_a_cold_first_cell_starts_no_processes_for_brief_ones(
     assert len([*executor.outcomes_of(jobs, 2, Progress())]) == 41
 
 
-@pytest.mark.parametrize(("seconds", "started"), [(0.02, False), (0.4, True)])
-def test_where_no_core_is_idle_only_long_runs_have_processes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float, started: bool
-) -> None:
-    """40 cells of 0.02 s are worth processes that a core waits for, and of 0.4 s any."""
-    spent, tasks = [0.0], [0]
-
-    def run_here(batch: list[CellJob], began: Any) -> list[Any]:
-        spent[0] += seconds * len(batch)
-        return [failed(job, "died") for job in batch]
-
-    def work(function: Any, batches: Any, *arguments: Any) -> Any:
-        tasks[0] += len(batches)
-        return [(batch, [failed(job, "died") for job in batch]) for batch in batches]
-
-    jobs = jobs_of(tmp_path, [round(0.1 + k / 240, 4) for k in range(40)])
-    monkeypatch.setattr(executor, "run_and_measure", run_here)
-    monkeypatch.setattr(executor, "process_time", lambda: spent[0])
-    monkeypatch.setattr(executor, "WORTH_PROCESSES", 4.0)
-    monkeypatch.setattr(executor, "work", work)
-    for idle in (1.0, 0.1):
-        tasks[0] = 0
-        monkeypatch.setattr(executor.CORES, "idle", lambda: idle)  # noqa: B023 - asked at once
-        assert len([*executor.outcomes_of(jobs, 2, Progress())]) == 40
-        assert (tasks[0] > 0) == (started or idle == 1.0)
-
-
 def test_a_kernel_that_waited_for_the_processor_takes_no_more_than_there_was() -> None:
     """Loaded in 3 s by the wall, of a second that the processor worked here: 0.2 s are left."""
     outcome = CellOutcome(0, "complete", 9, 3 * 10**9, 10**8, 10**8, Accuracy())
