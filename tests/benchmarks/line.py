@@ -4,6 +4,7 @@
 
 chapter    configs/chapter, whole            pyramid  210 boxes, as shipped
 drops      a sweep of 1,000 drops of 1 s     pile     1000 spheres, as shipped (4 s)
+brief cells  as many of 250 steps, with one measure
 ball of N  one ball, long and short: their difference is what a step costs
 
 Every repeat visits all cases and commands in turn, after runs that leave every kernel on disk; the
@@ -138,7 +139,7 @@ def parsed() -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(description="What the line around the physics costs.")
     parser.add_argument("--repeats", type=int, default=3, help="interleaved rounds, at least 1")
-    parser.add_argument("--cells", type=int, default=1000, help="of the sweep of drops")
+    parser.add_argument("--cells", type=int, default=1000, help="of the sweeps of drops")
     parser.add_argument("--steps", type=int, default=STEPS, help="of the long ball")
     parser.add_argument("--pile-duration", type=float, default=PILE_DURATION, help="[s]")
     parser.add_argument("--cases", nargs="*", help="only those whose names begin so")

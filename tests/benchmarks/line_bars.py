@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 from .line_commands import LS, PLAN, PLOT, RUN
 
 COMMAND_BARS = {RUN: 2.0, PLOT: 4.0, PLAN: 0.7, LS: 0.3}  # [s], warm, on two cores
-DROP_BAR = 3.0  # [ms] a cell of the sweep of drops
+# [ms] a cell, with its log, its measures and what judges it
+CELL_BARS = {"drops": ("the sweep of drops", 3.0), "brief cells": ("brief cells", 1.0)}
 RATIO_BAR = 0.5  # logging and judging by physics, of the pyramid and of the pile
 BALL_BAR = 1.0  # [us/step] logging and judging of one ball, apart from the cell's own cost
 PILE_BAR = 200.0  # [MB] log of the pile, of PILE_STEPS
@@ -75,10 +76,10 @@ def _of_commands(commands: dict[str, Any]) -> Iterator[Compared]:
 
 
 def _of_cases(cases: dict[str, Any]) -> Iterator[Compared]:
-    if "drops" in cases:
-        drops = cases["drops"]
-        cell = drops["medians"]["wall"] / drops["cells"] * 1e3
-        yield Compared("a cell of the sweep of drops", cell, DROP_BAR, "ms")
+    for name, (what, bar) in CELL_BARS.items():
+        if name in cases:
+            cell = cases[name]["medians"]["wall"] / cases[name]["cells"] * 1e3
+            yield Compared(f"a cell of {what}", cell, bar, "ms")
     for name in ("pyramid", "pile"):
         if name in cases:
             samples = cases[name]["samples"]

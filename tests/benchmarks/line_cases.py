@@ -49,6 +49,23 @@ expect:
 )
 RESTITUTIONS = 20  # 0.1, 0.14, ..., 0.86
 
+# The same with less of everything: 250 steps, one measure, one claim.
+BRIEF = (
+    SCENE
+    + """\
+numerics: {timestep: 1/250}
+duration: 1.0
+sweep:
+  mass: {path: scene.bodies.ball.mass, values: [MASSES]}
+  e: {path: scene.bodies.ball.surface.restitution, values: [RESTITUTIONS]}
+always: {}
+measure:
+  rebound: {kind: first_apex, body: ball, above: floor}
+expect:
+  - {name: it rebounds, measure: rebound, between: [0.0, 1.0]}
+"""
+)
+
 # One body of one contact: what a step costs the log at the least. It rests after 3 s.
 BALL = (
     SCENE
@@ -69,13 +86,13 @@ class LineCase(NamedTuple):
     warm: Callable[[], Sequence[Experiment]]
 
 
-def drops(cells: int) -> str:
+def drops(cells: int, text: str = DROPS) -> str:
     """Return the config of a sweep of drops; the cells are a multiple of RESTITUTIONS."""
     if cells % RESTITUTIONS:
         raise ValueError(f"{cells} drops: expected a multiple of {RESTITUTIONS}")
     masses = ", ".join(f"{0.5 + 0.05 * k:.2f}" for k in range(cells // RESTITUTIONS))
     restitutions = ", ".join(f"{0.1 + 0.04 * k:.2f}" for k in range(RESTITUTIONS))
-    return DROPS.replace("MASSES", masses).replace("RESTITUTIONS", restitutions)
+    return text.replace("MASSES", masses).replace("RESTITUTIONS", restitutions)
 
 
 def lasting(text: str, duration: float | str) -> str:
@@ -112,6 +129,7 @@ def cases(
     return [
         LineCase("chapter", lambda: load_all([CHAPTER]), lambda: load_all([CHAPTER])),
         of_text("drops", drops(cells), drops(RESTITUTIONS)),
+        of_text("brief cells", drops(cells, BRIEF), drops(RESTITUTIONS, BRIEF)),
         of_text("pyramid", pyramid, lasting(pyramid, SHORTEST)),
         of_text("pile", lasting(pile, pile_duration), lasting(pile, SHORTEST)),
         ball(steps),

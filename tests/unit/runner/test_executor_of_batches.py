@@ -14,8 +14,10 @@ from lavendersim import open_trace
 from lavendersim.cell import CellEngine
 from lavendersim.experiment import load_experiment_text
 from lavendersim.runner import Progress, executor
+from lavendersim.runner.accuracy import Accuracy
 from lavendersim.runner.cell import CellJob, failed, run_and_measure
 from lavendersim.runner.cell_jobs import prepare
+from lavendersim.runner.cell_outcome import CellOutcome
 from lavendersim.runner.executor import SHORT, TOGETHER
 from lavendersim.runner.interruption import Interrupted, handled
 from lavendersim.runner.run_index import ended_rows
@@ -150,3 +152,11 @@ def test_a_cold_first_cell_starts_no_processes_for_brief_ones(
     monkeypatch.setattr(executor, "WORTH_PROCESSES", 4.0)
     monkeypatch.setattr(executor, "work", lambda *what: pytest.fail("a process was started"))
     assert len([*executor.outcomes_of(jobs, 2, Progress())]) == 41
+
+
+def test_a_kernel_that_waited_for_the_processor_takes_no_more_than_there_was() -> None:
+    """Loaded in 3 s by the wall, of a second that the processor worked here: 0.2 s are left."""
+    outcome = CellOutcome(0, "complete", 9, 3 * 10**9, 10**8, 10**8, Accuracy())
+    assert executor._without_compiling(1.0, [outcome]) == 0.2
+    assert executor._without_compiling(0.1, [outcome]) == 0.1
+    assert executor._without_compiling(4.0, [outcome]) == 1.0
