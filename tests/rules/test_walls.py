@@ -72,7 +72,6 @@ OF_THE_WRITER = {
     ("lavendersim/trace/predictors.py", "lavendersim.engine.expected_kernel"),
     ("lavendersim/trace/sphere_contacts.py", "lavendersim.engine.expected_kernel"),
     ("lavendersim/trace/points.py", "lavendersim.engine.point_kernel"),
-    ("lavendersim/trace/checksums.py", "lavendersim.engine.checksum_kernel"),
 }
 # Who may import a library of others; what is not listed is imported by nobody.
 LIBRARIES = {
