@@ -200,7 +200,7 @@ def clip_faces(b_is_better, axis_a, axis_b, margin, scratch):
     A's face is the reference, or B's where that is clearly the better one.
     """
     manifold = scratch.manifold
-    # One call for both, which is merged in once: it is half of what there is to compile.
+    # Clipped in one place for both, which halves what there is to compile.
     if b_is_better:
         reference, incident, axis, names = scratch.box_b, scratch.box_a, axis_b, BOX_NAMES
         outward = scratch.box_b.offset[axis_b] < 0.0  # the offset is of B's centre from A's
