@@ -281,9 +281,9 @@ def make_displace(spec: Spec) -> Any:
                     return free_turn(body, v, dt)
                 # Impulses changed its spin at the middle; what jumps turns with that after them.
                 mean = Vec3(m.mean_x, m.mean_y, m.mean_z)
-                spin = mean if lasting else Vec3(v.wx, v.wy, v.wz)
+                end = Vec3(v.wx, v.wy, v.wz)
                 v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
-                turn_by_mean(body, v, mean, spin, dt)
+                turn_by_mean(body, v, mean, end, not lasting, dt)
                 return True
         if springs:
             if sprung and body.sprung == PLACED:

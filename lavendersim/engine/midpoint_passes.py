@@ -191,6 +191,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             for c in range(count):
                 contact = contacts[c]
                 impulse = impulse_of(contact)
+                contact.lasts = 1
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                 shift(contact, pairs[contact.pair], lead, motion, params)
                 if contact.jumps == 1:
@@ -248,6 +249,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             for c in range(count):
                 contact = contacts[c]
                 stay(contact, bodies, poses)
+                contact.lasts = 1 if contact.phi <= params.slop else 0
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                 lasting(contact, pairs[contact.pair], velocities, motion, params)
             if loaded:
