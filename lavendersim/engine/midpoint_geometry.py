@@ -160,8 +160,8 @@ def make_look(spec: Spec) -> Any:
     Flat faces that turn pass from face on face to edge on face: of a pair of them that has none of
     its features any more each contact is at the nearest new one, of another pair of them where a
     new one is as near as its own would be. So does what is round and rolls off an edge onto a face,
-    if the normal has turned: that of the start would hold back what flies on. Any other point that the manifold no longer has stays on
-    its two bodies: see `stay`.
+    if the normal has turned: that of the start would hold back what flies on. Any other point that
+    the manifold no longer has stays on its two bodies: see `stay`.
     """
     manifold = make_manifold(spec, spec.shape_pairs)
     compound, place_parts = made_once(spec, "place_parts")

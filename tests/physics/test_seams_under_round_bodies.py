@@ -94,9 +94,9 @@ def test_round_body_that_rolls_against_a_riser_loses_its_share_once(
     """In whatever part of a step it meets it: (1 - (h/R)/(1 + k))^2 of the speed is left.
 
     k: its inertia about its axis, of m R^2. It then turns about the edge, so that the angular
-    momentum about it, m v (R - h) + k m R v, is (1 + k) m R^2 omega; v = omega (R - h) is left along
-    the floor. By v^2/R > g it flies off at once, lands, and rolls on after friction has had it:
-    (1 + k) v' = v + k omega R.
+    momentum about it, m v (R - h) + k m R v, is (1 + k) m R^2 omega; v = omega (R - h) is left
+    along the floor. By v^2/R > g it flies off at once, lands, and rolls on after friction has had
+    it: (1 + k) v' = v + k omega R.
     """
     cylinder, caps = 0.3, 4.0 / 3.0 * RADIUS  # parts of a capsule's volume, of pi R^2 [m]
     of_capsule = (0.5 * cylinder + 0.4 * caps) / (cylinder + caps)
