@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .approach import CREEP
 from .compile import inner, kernel
 from .row_terms import row_terms
 from .spec import Spec
@@ -13,8 +14,6 @@ from .spec import Spec
 LOOSE = 1e-12
 # Speed whose digits a velocity near 0 has by what it is the difference of [m/s].
 ROUNDED = 1.0
-# What solves leave is no parting [m/s].
-PARTS = 1e-7
 
 
 @inner
@@ -39,7 +38,7 @@ def make_widen(spec: Spec) -> Any:
             if contact.bilateral == 1:
                 return
         opens = contact.middle_n - contact.begin_n
-        if contact.phi <= params.slop and contact.begin_n > PARTS:
+        if contact.phi <= params.slop and contact.begin_n > CREEP:
             mean = contact.v_n_pre - 0.5 * contact.dv_n
             if contact.phi + mean * params.dt > params.slop:
                 contact.target = max(contact.target, target_of_flight(contact.v_n_pre))
