@@ -17,6 +17,7 @@ from .compile import inner, kernel
 from .effects import made_once
 from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 from .tangents import first_tangent, second_tangent
 from .vectors import Vec3, cross, dot, plus_scaled
 
@@ -223,10 +224,11 @@ def make_complete_block(spec: Spec):
     swept, shifted = row_terms(spec).swept, row_terms(spec).shifted
     stretched, stretch_tangents = made_once(spec, "stretch_tangents")
     response, beside = make_block_response(spec), place_beside(spec)
+    centred = step_terms(spec).centred
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi
-        if shifted:
+        if centred:
             if contact.lasts == 1 and body_a.inv_m > 0.0 and body_b.inv_m > 0.0:
                 half = 0.0
         x, y, z = contact.nx * half, contact.ny * half, contact.nz * half

@@ -283,7 +283,8 @@ def make_displace(spec: Spec) -> Any:
                 mean = Vec3(m.mean_x, m.mean_y, m.mean_z)
                 end = Vec3(v.wx, v.wy, v.wz)
                 v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
-                turn_by_mean(body, v, mean, end, not lasting, dt)
+                spin = mean if lasting else end
+                turn_by_mean(body, v, mean, spin, end, lasting and m.held == 0, dt)
                 return True
         if springs:
             if sprung and body.sprung == PLACED:

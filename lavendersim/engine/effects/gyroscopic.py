@@ -177,21 +177,22 @@ def make_turn_midway(spec):
 
 
 def make_turn_by_mean(spec):
-    """Return `kernel(body, velocity, mean, end, jumps, dt)`: turn with a spin of the step's middle.
+    """Return `kernel(body, velocity, mean, spin, end, gives, dt)`: turn with a spin of the middle.
 
     velocity: spin at its start, replaced by that at its end. mean, end: spins at the middle, of the
-    step and of its end there, so that impulses gave L = 2 I (end - mean). It turns with the mean,
-    and the world's momentum grows by L, to the last digit of the solve; the energy is that of
-    2 omega_m - omega_0 in body axes, to what the solve leaves. What jumps turns with the end, and
-    has that spin itself.
+    step and of its end there. spin: what it turns with, which is the mean where no contact makes it
+    jump. Its spin is then, in body axes, 2 omega_m - omega_0, of the mean: energy is kept to the
+    last digit, momentum to what the solve leaves. gives: what it is pushed by moves, too, and gets
+    what it takes: the world's momentum grows by L = 2 I (end - mean) to the last digit, and energy
+    is kept to what the solve leaves.
     """
     from ..rotation import half_turn, inertia_times, inverse_inertia_times, to_body, to_world, turn
 
-    def turn_by_mean(body, velocity, mean, end, jumps, dt):
-        if jumps:
+    def turn_by_mean(body, velocity, mean, spin, end, gives, dt):
+        if not gives:
             ax, ay, az = to_body(body, velocity.wx, velocity.wy, velocity.wz)
             bx, by, bz = to_body(body, mean.x, mean.y, mean.z)
-            turn(body, end.x * dt, end.y * dt, end.z * dt)
+            turn(body, spin.x * dt, spin.y * dt, spin.z * dt)
             velocity.wx, velocity.wy, velocity.wz = to_world(
                 body, 2.0 * bx - ax, 2.0 * by - ay, 2.0 * bz - az
             )
