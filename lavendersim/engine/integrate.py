@@ -14,6 +14,7 @@ from typing import Any
 from .body_turn import make_free_turn, make_turn, make_turn_in_halves
 from .compile import kernel
 from .effects import has_hook, made_once
+from .effects.gyroscopic import GIVES, JUMPS, ON_FIXED
 from .joined_impacts import make_share_impacts
 from .records import NOT_FINITE, SPHERE, TURNS_TOO_FAST
 from .rotation import inertia_times, is_round, turn, turn_exactly
@@ -283,8 +284,10 @@ def make_displace(spec: Spec) -> Any:
                 mean = Vec3(m.mean_x, m.mean_y, m.mean_z)
                 end = Vec3(v.wx, v.wy, v.wz)
                 v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
-                spin = mean if lasting else end
-                turn_by_mean(body, v, mean, spin, end, lasting and m.held == 0, dt)
+                kind = JUMPS
+                if lasting:
+                    kind = ON_FIXED if m.on_fixed == 1 else GIVES
+                turn_by_mean(body, v, mean, end, kind, dt)
                 return True
         if springs:
             if sprung and body.sprung == PLACED:

@@ -272,14 +272,14 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         if notes:
             note_middle(bodies, velocities, lead, False, params)
         for i in range(motion.shape[0]):
-            motion[i].held = 0
+            motion[i].on_fixed = 0
         for c in range(count):
             contact = contacts[c]
             if acts(contact):
                 a, b = motion[contact.a], motion[contact.b]
                 a.midway, b.midway = MIDDLE, MIDDLE
                 if contact.inv_m_a == 0.0 or contact.inv_m_b == 0.0:
-                    a.held, b.held = 1, 1
+                    a.on_fixed, b.on_fixed = 1, 1
         for i in range(motion.shape[0]):
             if motion[i].midway == 0:  # it flies, from the start of the step
                 v, before = velocities[i], free[i]

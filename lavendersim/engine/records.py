@@ -121,7 +121,7 @@ MOTION: Final[list[Field]] = [
     ("carried", I8),  # by a contact. 0: free; else AFTERWARDS, ALWAYS, LASTING: see `integrate`
     ("midway", I8),  # whether impulses at the middle of the step changed its velocity: `integrate`
     ("unparted", I8),  # 1: its joints stayed together at the last middle
-    ("held", I8),  # 1: what does not move pushes it at the middle; where midway is 1
+    ("on_fixed", I8),  # 1: what does not move pushes it at the middle; where midway is 1
     ("mean_x", F8),  # mean spin of the step, where midway is 1 [rad/s]
     ("mean_y", F8),
     ("mean_z", F8),

@@ -29,7 +29,7 @@ SHAPES = {
 PAIRS = tuple(itertools.combinations_with_replacement(SHAPES, 2))
 MASSES = 1.5, 0.7  # [kg]
 # e, mu and what the relative velocity and each component of a spin are like [m/s], [rad/s].
-ELASTIC, ROUGH, PLASTIC = (1.0, 0.0, 3.5, 4.0), (0.6, 0.4, 3.5, 4.0), (0.0, 0.3, 0.7, 1.0)
+ELASTIC, FRICTIONAL, PLASTIC = (1.0, 0.0, 3.5, 4.0), (0.6, 0.4, 3.5, 4.0), (0.0, 0.3, 0.7, 1.0)
 
 
 def meeting(pair: tuple[str, str], rate: int, law: tuple[float, ...]) -> str:
@@ -64,7 +64,7 @@ def ran() -> dict[str, States]:
     texts = {}
     for pair, rate in itertools.product(PAIRS, RATES):
         texts[f"elastic {pair} {rate}"] = meeting(pair, rate, ELASTIC)
-        texts[f"rough {pair} {rate}"] = meeting(pair, rate, ROUGH)
+        texts[f"frictional {pair} {rate}"] = meeting(pair, rate, FRICTIONAL)
     texts["rim"] = meetings_with_spin(60)["cylinder and box, mu 0.3"][0]
     texts |= {f"plastic {pair} 240": meeting(pair, 240, PLASTIC) for pair in PAIRS}
     return run_scenes(texts)
@@ -75,7 +75,7 @@ def column(states: States, name: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize("kind", ["elastic", "rough"])
+@pytest.mark.parametrize("kind", ["elastic", "frictional"])
 def test_whatever_meets_keeps_momentum_and_angular_momentum(
     ran: dict[str, States], kind: str, rate: int
 ) -> None:

@@ -18,6 +18,8 @@ from .effect import Column, Effect, Hooks, kernel
 PASSES = 20
 # Relative change of m, squared, at which its digits are found.
 FOUND = 1e-28
+# How a body turns by a middle: pushed by what moves, by what does not, or with a jump.
+GIVES, ON_FIXED, JUMPS = 0, 1, 2
 
 
 def decide(facts: Facts) -> Decision:
@@ -177,19 +179,20 @@ def make_turn_midway(spec):
 
 
 def make_turn_by_mean(spec):
-    """Return `kernel(body, velocity, mean, spin, end, gives, dt)`: turn with a spin of the middle.
+    """Return `kernel(body, velocity, mean, end, kind, dt)`: turn with a spin of the middle.
 
     velocity: spin at its start, replaced by that at its end. mean, end: spins at the middle, of the
-    step and of its end there. spin: what it turns with, which is the mean where no contact makes it
-    jump. Its spin is then, in body axes, 2 omega_m - omega_0, of the mean: energy is kept to the
-    last digit, momentum to what the solve leaves. gives: what it is pushed by moves, too, and gets
+    step and of its end there. It turns with the mean, or with the end what a contact makes jump
+    (JUMPS). Its spin is then, in body axes, 2 omega_m - omega_0, of the mean: energy is kept to the
+    last digit, momentum to what the solve leaves. GIVES: what it is pushed by moves, too, and gets
     what it takes: the world's momentum grows by L = 2 I (end - mean) to the last digit, and energy
     is kept to what the solve leaves.
     """
     from ..rotation import half_turn, inertia_times, inverse_inertia_times, to_body, to_world, turn
 
-    def turn_by_mean(body, velocity, mean, spin, end, gives, dt):
-        if not gives:
+    def turn_by_mean(body, velocity, mean, end, kind, dt):
+        if kind != GIVES:
+            spin = end if kind == JUMPS else mean
             ax, ay, az = to_body(body, velocity.wx, velocity.wy, velocity.wz)
             bx, by, bz = to_body(body, mean.x, mean.y, mean.z)
             turn(body, spin.x * dt, spin.y * dt, spin.z * dt)

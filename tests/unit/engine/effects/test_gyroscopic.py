@@ -108,7 +108,7 @@ def test_a_turn_by_the_mean_adds_what_impulses_gave_to_the_momentum_of_the_world
             setattr(half.body, name, getattr(one.body, name))
         interpreted(rotation.half_turn)(half.body, *mean, 0.1)
         momentum, matrix = one.momentum, one.matrix
-        kernel(one.body, one.velocity, Vec3(*mean), Vec3(*mean), Vec3(*end), True, 0.1)
+        kernel(one.body, one.velocity, Vec3(*mean), Vec3(*end), gyroscopic.GIVES, 0.1)
         given = 2.0 * half.tensor @ (end - mean)
         np.testing.assert_allclose(one.momentum, momentum + given, atol=1e-13)
         # Turned about the mean, which alone stays where it was.
@@ -119,7 +119,7 @@ def test_a_jump_by_the_mean_ends_with_twice_the_mean_less_the_start_in_body_axes
     kernel = interpreted(gyroscopic.make_turn_by_mean(Spec()))
     one, mean, end = Spinning(rng), rng.normal(size=3), rng.normal(size=3)
     before, matrix = one.matrix.T @ one.omega, one.matrix
-    kernel(one.body, one.velocity, Vec3(*mean), Vec3(*end), Vec3(*end), False, 0.1)
+    kernel(one.body, one.velocity, Vec3(*mean), Vec3(*end), gyroscopic.JUMPS, 0.1)
     expected = 2.0 * matrix.T @ mean - before
     np.testing.assert_allclose(one.matrix.T @ one.omega, expected, atol=1e-14)
     np.testing.assert_allclose(one.matrix @ matrix.T @ end, end, atol=1e-14)
@@ -145,8 +145,8 @@ def test_an_impulse_at_the_middle_gives_the_world_its_momentum_and_its_work(rng)
         gained = np.array(inverse(body, *given))
         mean = np.array([lead.wx, lead.wy, lead.wz]) + 0.5 * gained
         momentum, energy = start.momentum, start.energy
-        ends = Vec3(*mean), Vec3(*mean), Vec3(*(mean + 0.5 * gained))
-        by_mean(start.body, start.velocity, *ends, True, dt)
+        ends = Vec3(*mean), Vec3(*(mean + 0.5 * gained))
+        by_mean(start.body, start.velocity, *ends, gyroscopic.GIVES, dt)
         np.testing.assert_allclose(start.momentum, momentum + given, atol=1e-13)
         assert start.energy - energy == pytest.approx(given @ mean, abs=1e-12)
 
