@@ -14,9 +14,8 @@ from typing import Any
 from .body_turn import make_free_turn, make_turn, make_turn_in_halves
 from .compile import kernel
 from .effects import has_hook, made_once
-from .effects.gyroscopic import GIVES, JUMPS, ON_FIXED
 from .joined_impacts import make_share_impacts
-from .records import NOT_FINITE, SPHERE, TURNS_TOO_FAST
+from .records import GIVES, JUMPS, NOT_FINITE, ON_FIXED, SPHERE, TURNS_TOO_FAST
 from .rotation import inertia_times, is_round, turn, turn_exactly
 from .row_terms import make_acts, row_terms
 from .spec import Spec

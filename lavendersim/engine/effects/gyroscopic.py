@@ -9,6 +9,7 @@ found by Newton's method.
 
 from math import sqrt
 
+from ..records import GIVES, JUMPS
 from ..terms import StepTerms
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Hooks, kernel
@@ -18,8 +19,6 @@ from .effect import Column, Effect, Hooks, kernel
 PASSES = 20
 # Relative change of m, squared, at which its digits are found.
 FOUND = 1e-28
-# How a body turns by a middle: pushed by what moves, by what does not, or with a jump.
-GIVES, ON_FIXED, JUMPS = 0, 1, 2
 
 
 def decide(facts: Facts) -> Decision:
