@@ -9,9 +9,7 @@ from __future__ import annotations
 from typing import Final
 
 CALL: Final = 0.25  # [s] that a call is to take
-# Steps of a call. Of one ball they take a millisecond, and what is done once a call twice that: of
-# 4096 steps logging and judging took a seventh longer.
-MOST: Final = 16384
+MOST: Final = 4096  # steps of a call: enough to amortise it
 GROWTH: Final = 8  # from call to call, at most
 POSES: Final = 2 * 1024 * 1024  # [byte] of poses that an engine holds
 

@@ -33,9 +33,9 @@ from lavendersim.trace.schema import FORMAT
 from lavendersim.trace.urdf import robot_description
 from lavendersim.trace.whole import LogDigest
 
-# Small, so that a killed run loses little: some 10,000 steps, of one ball 30 ms. Closing a group
-# costs as much as laying out a thousand steps of one ball.
-LIGHT_BYTES = 4 * 1024 * 1024
+# Small, so that a killed run loses little: some 5,000 steps. Closing a group costs as much as
+# laying out a thousand steps of one ball.
+LIGHT_BYTES = 2 * 1024 * 1024
 # Large enough to compress well, small enough that a viewer can hold a few.
 BULK_BYTES = 4 * 1024 * 1024
 # Most of what a contact's numbers have in common they have with those of the step before.
