@@ -191,7 +191,6 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             for c in range(count):
                 contact = contacts[c]
                 impulse = impulse_of(contact)
-                contact.lasts = 1
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                 shift(contact, pairs[contact.pair], lead, motion, params)
                 if contact.jumps == 1:
@@ -249,7 +248,6 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             for c in range(count):
                 contact = contacts[c]
                 stay(contact, bodies, poses)
-                contact.lasts = 1 if contact.phi <= params.slop else 0
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                 lasting(contact, pairs[contact.pair], velocities, motion, params)
             if loaded:
@@ -271,15 +269,10 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
         counters.sweeps = sweeps
         if notes:
             note_middle(bodies, velocities, lead, False, params)
-        for i in range(motion.shape[0]):
-            motion[i].on_fixed = 0
         for c in range(count):
             contact = contacts[c]
             if acts(contact):
-                a, b = motion[contact.a], motion[contact.b]
-                a.midway, b.midway = MIDDLE, MIDDLE
-                if contact.inv_m_a == 0.0 or contact.inv_m_b == 0.0:
-                    a.on_fixed, b.on_fixed = 1, 1
+                motion[contact.a].midway, motion[contact.b].midway = MIDDLE, MIDDLE
         for i in range(motion.shape[0]):
             if motion[i].midway == 0:  # it flies, from the start of the step
                 v, before = velocities[i], free[i]

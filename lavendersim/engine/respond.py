@@ -136,8 +136,6 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             end = min(begin + together, count)
             for c in range(begin, end):
                 contact, pair = contacts[c], pairs[contacts[c].pair]
-                if centred:
-                    contact.lasts = 1 if contact.phi <= params.slop else 0
                 append_contact(contact, bodies, velocities, motion, pair, params)
             if watched:
                 for c in range(begin, end):
