@@ -30,6 +30,13 @@ RIM_POINTS = 16  # a rim's points; every other one is a corner of its octagon
 
 
 @inner
+def halfway(body, p, n, phi):
+    """Return the middle between a corner, p from its body's centre, and the plane below it."""
+    half = 0.5 * phi
+    return Vec3(body.x + p.x - half * n.x, body.y + p.y - half * n.y, body.z + p.z - half * n.z)
+
+
+@inner
 def keep_corners(body, corners, plane, margin, scratch):
     """Write those of the first corners of `outline_b` that are near the plane; return how many.
 
@@ -42,13 +49,7 @@ def keep_corners(body, corners, plane, margin, scratch):
         p = position(scratch.outline_b.corners[k])
         phi = height + n.x * p.x + n.y * p.y + n.z * p.z
         if phi <= margin:
-            half = 0.5 * phi
-            middle = Vec3(
-                body.x + p.x - half * n.x,
-                body.y + p.y - half * n.y,
-                body.z + p.z - half * n.z,
-            )
-            place(rows[count], middle, phi, first + k)
+            place(rows[count], halfway(body, p, n, phi), phi, first + k)
             count += 1
     return write_manifold(scratch.manifold, rows, count, n)
 
@@ -73,12 +74,7 @@ def make_put_rim(spec):
             p = from_body(cylinder, Vec3(c * x - s * y, c * y + s * x, z))
             phi = height + n.x * p.x + n.y * p.y + n.z * p.z
             if phi <= margin:
-                half = 0.5 * phi
-                middle = Vec3(
-                    cylinder.x + p.x - half * n.x,
-                    cylinder.y + p.y - half * n.y,
-                    cylinder.z + p.z - half * n.z,
-                )
+                middle = halfway(cylinder, p, n, phi)
                 place(manifold.points[total + put], middle, phi, RIM + k)
                 put += 1
         if manifold.reduction[WHOLE] == 1:
