@@ -19,12 +19,11 @@ from . import field_places
 from .extremes import EXTREMES, extreme, extreme_of
 from .field_places import FIELDS, composed_name
 from .light_values import pointing_to, slot
-from .matrix_cells import cell_at, is_cell
+from .matrix_cells import INDICES, WORD, cell_at, is_cell
 from .memory_references import are_rows, is_memory, item
 from .range_loops import ITERATOR, RANGE, begun, limits, next_of
 
-INT32, WORD = IntType(32), IntType(64)
-INDICES = types.int64, types.uint64
+INT32 = IntType(32)
 HANDED_ON = "call", "build_tuple"  # expressions that leave records and arrays as they are
 
 _FLOAT = {

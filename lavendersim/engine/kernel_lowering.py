@@ -20,7 +20,8 @@ from numba.core.typed_passes import NativeLowering
 from . import field_places
 from .compile_options import OPTIONS
 from .field_places import FIELDS
-from .kernel_expressions import INDICES, WORD, ShortExpressions
+from .kernel_expressions import ShortExpressions
+from .matrix_cells import INDICES, WORD
 from .python_door import for_python
 from .range_loops import RANGE
 from .single_assignment import local_variables

@@ -14,7 +14,7 @@ from numba.core import types
 from .field_places import FIELDS
 
 WORD = IntType(64)
-NUMBERS = types.int64, types.uint64
+INDICES = types.int64, types.uint64
 
 
 def is_cell(kind: Any, index: Any) -> bool:
@@ -23,7 +23,7 @@ def is_cell(kind: Any, index: Any) -> bool:
         return False
     along: Any = index
     plain = kind.layout == "C" and kind.aligned and kind.dtype in FIELDS
-    numbers = all(types.unliteral(each) in NUMBERS for each in along)
+    numbers = all(types.unliteral(each) in INDICES for each in along)
     return plain and kind.ndim == len(along) > 1 and numbers
 
 
