@@ -35,7 +35,7 @@ from tests import scenes_of_families as scenes
 
 NEVER_ADDED = {
     *("error_control", "impact_order", "packed_sweeps", "residual_log", "rotation"),
-    "supernodes",
+    *("anderson_acceleration", "supernodes"),
 }
 BY_EFFECTS = CHOICES.index("sleeping")  # a choice that says no more than that the effect is there
 ROOT = Path(__file__).parents[1]

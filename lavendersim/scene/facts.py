@@ -126,6 +126,7 @@ def facts_of(config: CellConfig, record: bool = True) -> Facts:
         friction_cone=numerics.friction_cone,
         order=numerics.order,
         over_relaxation=numerics.over_relaxation,
+        sweeps=numerics.sweeps,
         scene=config.scene,
         sleeping=numerics.sleeping,
         events=bool(changes_of_bodies(config.planned_events)),

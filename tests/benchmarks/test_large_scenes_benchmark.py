@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.benchmarks import large_scenes
-from tests.benchmarks.large_scenes import SCENES, Large, measure, solved, spheres
+from tests.benchmarks.large_scenes import SCENES, Large, measure, solved, spheres, swept
 from tests.benchmarks.memory_traffic import memory_bandwidth
 from tests.benchmarks.prepared_contacts import pile
 from tests.benchmarks.scenes import case
@@ -45,3 +45,13 @@ def test_a_row_counts_the_steps_that_were_solved() -> None:
 
 def test_memory_gives_what_a_machine_may_have() -> None:
     assert 0.1 < memory_bandwidth() < 2000.0  # [GB/s]
+
+
+def test_heaps_that_ask_for_many_sweeps_have_them_mixed() -> None:
+    text = spheres(10, 10)
+    few, many = (
+        case(one, record=False).plan.decisions["anderson_acceleration"]
+        for one in (text, swept(text))
+    )
+    assert not few.on
+    assert many.on

@@ -30,7 +30,7 @@ from tests.thorough import THOROUGH
 NO_KERNEL = {
     *("broad_phase", "contact_torque", "frictionless_contact", "kinematic", "midpoint", "newton"),
     *("hertz_contact", "joint_stop", "overlooked_points", "packed_sweeps"),
-    *("supernodes", "periodic_boundary"),
+    *("anderson_acceleration", "supernodes", "periodic_boundary"),
 }
 # Whose code is more or less by what the compiler inlines: a body that is called from one place is
 # copied there, the same body beside another (`frictionless_contact`) is called. A condition more

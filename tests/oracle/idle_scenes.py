@@ -220,6 +220,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "supernodes": ("adaptive balls",),
     "least_norm": ("single ball",),
     "packed_sweeps": ("adaptive balls",),
+    "anderson_acceleration": ("adaptive balls",),
     "projection": ("balls",),
     "sleeping": ("frictional balls",),
     "triggers": ("balls",),

@@ -27,6 +27,7 @@ OTHER_LAWS = {
     *("broad_phase", "capture_in_sweeps", "fast_bodies", "impact_energy", "impact_time"),
     *("contact_midpoint", "contact_spring", "error_control", "hertz_contact", "impact_order"),
     *("midpoint", "newton", "supernodes", "tangential_compliance"),
+    "anderson_acceleration",
     *("least_norm", "overlooked_points", "pairwise_impacts", "sleeping", "sliding_stops"),
     *("joint", "joint_stop", "motor"),  # rows without a cone, beside which none are packed
     "speculative",

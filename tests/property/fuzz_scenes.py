@@ -116,6 +116,7 @@ NOT_DRAWN = {
 FORCED = {
     "broad_phase": "of thousands of pairs; here the tree is made for a few",
     "packed_sweeps": "of many bodies; here lanes are packed for a few",
+    "anderson_acceleration": "of long solves of hundreds of bodies; see `test_extrapolation.py`",
     "problem_log": "few scenes can be written as FCLIB files: none is asked for",
     "velocity_log": "columns of states that others have",
 }

@@ -41,7 +41,7 @@ SECTIONS = {
     "torques-at-a-contact": ("torsional_friction", "rolling_friction"),
     "warm-start": ("warm_start",),
     "newtons-method": ("newton", "supernodes"),
-    "packed-sweeps": ("packed_sweeps",),
+    "packed-sweeps": ("packed_sweeps", "anderson_acceleration"),
     "undetermined-forces": ("least_norm",),
     "projection": ("projection",),
     "integrate": ("rotation", "gyroscopic", "midpoint"),

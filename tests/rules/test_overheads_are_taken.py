@@ -56,6 +56,7 @@ IDLE = {  # in effects/sphere.yaml, with the reason why no config has it at work
     "compliance": "where a scene requires it, its law needs it",
     "least_norm": "another law where a scene requires it; of one ball on a plane it is idle",
     "newton": "where a scene requires it, solves without it are another solver's",
+    "anderson_acceleration": "of heaps that are given many sweeps; it is timed by large_scenes",
     "supernodes": "scenes that require it are of hundreds of boxes; it is timed by large_scenes",
     "sleeping": NONE,
     "residual_log": SWEPT,

@@ -86,6 +86,11 @@ ASKED = {
         "solvers/packed/team_sweeps": "of how many contacts threads share them",
         "engine": "of how many contacts a step has threads",
         "scene/explanation": "what threads would share",
+        "effects/anderson_acceleration": "sweeps that begin from several are packed",
+    },
+    "anderson_acceleration": {
+        "solvers/adaptive": "how many sweeps of a solve are plain",
+        "solvers/packed/layout": "room for the sweeps that are kept",
     },
     "supernodes": {"solvers/newton/factor": "which of two factors a contact graph gets"},
     "least_norm": {"scene/plan": "how many bodies it is affordable for divides plans"},

@@ -69,6 +69,7 @@ NAMES: Final = (
     "newton",
     "supernodes",
     "packed_sweeps",
+    "anderson_acceleration",
     "least_norm",
     "projection",
     "sleeping",

@@ -88,6 +88,7 @@ class Facts(NamedTuple):
     friction_cone: str = "disc"
     order: str = "coloured"  # of contacts in a sweep
     over_relaxation: float = 1.0
+    sweeps: int = 50  # of a solve, at most
     solver: str = "adaptive"
     sleeping: bool = False
     events: bool = False  # something is changed during the run

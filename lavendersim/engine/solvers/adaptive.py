@@ -15,7 +15,9 @@ a large heap that is not affordable, and the call takes no step.
 Without a tolerance nothing but a sweep that changes nothing ends a solve before its last sweep, and
 Newton's method is worth what it would be for a tolerance that is never reached.
 
-A solve that begins near its solution is over after a sweep and pays for nothing else.
+A solve that begins near its solution is over after a sweep and pays for nothing else. One of many
+contacts that is given more than PLAIN_SWEEPS begins the others from several together
+(`packed.extrapolation`).
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ from typing import Any, NamedTuple
 
 from ..compile import kernel
 from ..effects import has_hook
+from ..effects.anderson_acceleration import PLAIN_SWEEPS
 from ..residual import make_residual
 from ..row_terms import row_terms
 from ..spec import Spec
@@ -35,8 +38,10 @@ from .newton.envelope import allocate_envelope
 from .newton.factor import allocate_factor
 from .newton.method import FEWEST_STEPS, MOST_STEPS, make_newton, make_step_cost
 from .newton.rounds import SOFTEST
+from .packed.extrapolation import forget, make_extrapolate
 from .packed.late import FAR, FIRST, Packing, make_sweep_late, packs_late
 from .packed.layout import PackedContacts, allocate_packed
+from .packed.sweep import are_blocks
 from .solver import Solver, no_workspace
 from .sweep import make_sweep
 
@@ -95,10 +100,16 @@ class Adaption(NamedTuple):
     cost: float  # of a step [multiplications]
 
 
+def _mixes(spec: Spec) -> bool:
+    return spec.has("anderson_acceleration") and packs_late(spec) and are_blocks(spec)
+
+
 def make(spec: Spec) -> Iteration:
     """Return the sweeps, and Newton's method between them."""
     packs, chooses = packs_late(spec), has_hook(spec, "choose_impulses")
     looks = spec.has("newton")
+    mixes = _mixes(spec)
+    extrapolate: Any = make_extrapolate(spec) if mixes else None
     put_back: Any = None
     sweep: Any = None
     if packs:
@@ -112,16 +123,25 @@ def make(spec: Spec) -> Iteration:
         if counters.sharpen == 1:
             aim *= SHARPNESS
         counters.sharpen = 0
+        if mixes:
+            forget(workspace.packed)
         return Adaption(aim, Packing(FIRST, 0, 0), 0, 0.0, 0.0, LOOK, LOOK, True, -1, 0.0)
 
     def sweep_and_count(system, workspace, params, counters, carry):
         packing, sweeps = carry.packing, carry.sweeps
+        if mixes:
+            left = params.sweeps - LAST - sweeps
+            if sweeps >= PLAIN_SWEEPS and left >= 0 and packing.slots > 0 and packing.ahead == 0:
+                extrapolate(workspace.packed, packing.slots, left == 0)
         if packs:
             most = params.sweeps - sweeps
             if looks:
                 if most > LAST:
                     most -= LAST
                 most = min(most, carry.look - sweeps)
+            elif mixes:
+                if most > LAST:
+                    most -= LAST
             # What rests lets go of its first change in the second sweep.
             far = sweeps > FIRST and carry.greatest > FAR * carry.aim
             greatest, change, packing = sweep(system, workspace.packed, params, packing, most, far)
@@ -151,6 +171,7 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
     step_cost = make_step_cost(spec)
     chooses = has_hook(spec, "choose_impulses")
     packs, slides = put_back is not None, row_terms(spec).frictional
+    mixes = _mixes(spec)
     alart_curnier: Any = make_alart_curnier(spec)
     begin_again: Any = make_begin_again(spec)
 
@@ -188,6 +209,8 @@ def _make_proceed(spec: Spec, put_back: Any) -> Any:
                 if packs:
                     put_back(system, workspace.packed, packing)
                     packing = Packing(FIRST, 0, 0)  # few sweeps follow
+                    if mixes:
+                        forget(workspace.packed)
                 steps = 0
                 if not (over and ends):
                     steps, sticking_guess = newton(

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.typing.templates import signature
@@ -32,7 +33,15 @@ from .lanes import (
 )
 
 STRIDE = 8  # numbers from one body's state to the next
+LINE = 8  # numbers of a line of the processor's cache
 _LAST = [0, 1, 2, 7]  # of two vectors of four: x, y, z of the first, the second's last
+
+
+def lines(numbers: int) -> np.ndarray:
+    """Return zeros that begin with a line of the processor's cache."""
+    padded = np.zeros(numbers + LINE)
+    begin = -padded.ctypes.data // padded.itemsize % LINE
+    return padded[begin : begin + numbers]
 
 
 def place_of(context: Any, builder: Any, kind: Any, array_type: Any, array: Any, at: Any) -> Any:

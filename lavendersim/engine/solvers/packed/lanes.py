@@ -245,3 +245,16 @@ def zeros(typing):
         return _of(LANES, 0.0)
 
     return signature(LANES), emit
+
+
+@primitive
+def spread(typing, x):
+    """Return a number eight times."""
+
+    def emit(context, builder, sig, args):
+        one = builder.insert_element(
+            ir.Constant(EIGHT, ir.Undefined), args[0], ir.Constant(INDEX, 0)
+        )
+        return shuffled(builder, one, one, [0] * WIDTH)
+
+    return signature(LANES, x), emit

@@ -27,7 +27,7 @@ from ...records import ANGULAR_VELOCITY, F8, VELOCITY, Field, dtype
 from ...row_terms import row_terms
 from ...spec import Spec
 from ...team import MOST, TeamMemory, allocate_team
-from .lane_memory import STRIDE
+from .lane_memory import LINE, STRIDE, lines
 from .lanes import WIDTH
 
 # Fields of a block, in numbers. Axes of the contact, x y z each:
@@ -41,6 +41,8 @@ TURN_A, TURN_B = 3 * AXIS, 6 * AXIS
     GAMMA, LAMBDA_N, LAMBDA_1, LAMBDA_2,
 ) = range(9 * AXIS, 9 * AXIS + 19)  # fmt: skip
 BLOCK = LAMBDA_2 + 1
+# Impulses of a group of eight blocks.
+GROUP = 3 * WIDTH
 # Torsion, behind the block: L^T n of body A, negative, and of body B, and one number each.
 TORSION_A, TORSION_B = 0, AXIS
 W_TORSION, INV_TORSION, C_TORSION, PSI_N, TORSION_SPEED = range(2 * AXIS, 2 * AXIS + 5)
@@ -60,9 +62,10 @@ NORMAL_ALONE = PRESSED + 1
 YIELDING = 1  # gamma along the surface, the last field of all
 # Groups of a run, and sweeps that follow each other run by run (`sweep`).
 RUN, TOGETHER = 64, 4
-LINE = 8  # numbers of a line of the processor's cache
 # Pieces that a team may be dealt out, at most, for each contact and beside: see `team_sweeps`.
 MOST_PIECES, FEWEST_PIECES = 8, 1024
+# Sweeps that the next may begin from (`extrapolation`).
+DEPTH = 4
 # Lines of the state before those of bodies: what nothing moves, which idle lanes have, too, what is
 # written of it, and of each member of a team the same, two lines apart.
 HEAD = 2 + 2 * MOST
@@ -90,6 +93,19 @@ def begins(spec: Spec) -> Begins:
     return Begins(BLOCK, roll, end + (YIELDING if terms.yielding else 0))
 
 
+class KeptSweeps(NamedTuple):
+    """The last sweeps by slots; vectors of all slots lie one after the other."""
+
+    point: np.ndarray  # impulses with which the last sweep began [N s]
+    led_to: np.ndarray  # impulses after each
+    defects: np.ndarray  # the same, less those with which it began
+    states: np.ndarray  # of bodies after each
+    products: np.ndarray  # (DEPTH, DEPTH) of defects [kg m^2/s^2]
+    equations: np.ndarray  # (DEPTH, DEPTH + 1) of the least squares
+    shares: np.ndarray  # (DEPTH,) of each in the next beginning
+    counts: np.ndarray  # (4,) int64, see `extrapolation`
+
+
 class PackedContacts(NamedTuple):
     """Arrays of one solve."""
 
@@ -107,6 +123,7 @@ class PackedContacts(NamedTuple):
     stages: np.ndarray  # (contacts + 1,) int64, see `team_sweeps`
     counts: np.ndarray  # (1,) int64, of stages; 0: sweeps are not shared so
     team: TeamMemory
+    kept: KeptSweeps  # of no contacts where no sweep is mixed
 
 
 def stride(spec: Spec, eight: bool) -> int:
@@ -118,12 +135,13 @@ def stride(spec: Spec, eight: bool) -> int:
 def allocate_packed(spec: Spec, bodies: int, contacts: int, eight: bool) -> PackedContacts:
     """Return the arrays for so many bodies and contacts; memory is taken when it is used."""
     slots = WIDTH * contacts if eight else contacts  # at worst each contact has its own group
+    state, mixes = (HEAD + bodies) * STRIDE, eight and spec.has("anderson_acceleration")
     return PackedContacts(
-        _lines(contacts * stride(spec, eight)),
+        lines(contacts * stride(spec, eight)),
         np.zeros(slots, np.int64),
         np.zeros(slots, np.int64),
         np.zeros(contacts, np.int64),
-        _lines((HEAD + bodies) * STRIDE),
+        lines(state),
         np.zeros(bodies, dtype(START)),
         np.zeros(bodies, dtype(FACTOR)),
         np.zeros(bodies, np.int64),
@@ -133,18 +151,25 @@ def allocate_packed(spec: Spec, bodies: int, contacts: int, eight: bool) -> Pack
         np.zeros(contacts + 1, np.int64),
         np.zeros(1, np.int64),
         allocate_team(MOST_PIECES * contacts + FEWEST_PIECES),
+        _allocate_kept(contacts * GROUP, state) if mixes else _allocate_kept(0, 0),
+    )
+
+
+def _allocate_kept(impulses: int, state: int) -> KeptSweeps:
+    return KeptSweeps(
+        lines(impulses),
+        lines(DEPTH * impulses),
+        lines(DEPTH * impulses),
+        lines(DEPTH * state),
+        np.zeros((DEPTH, DEPTH)),
+        np.zeros((DEPTH, DEPTH + 1)),
+        np.zeros(DEPTH),
+        np.zeros(4, np.int64),
     )
 
 
 def _whole_lines(numbers: int) -> int:
     return -(-numbers // LINE) * LINE
-
-
-def _lines(numbers: int) -> np.ndarray:
-    """Return zeros that begin with a line of the processor's cache."""
-    padded = np.zeros(numbers + LINE)
-    begin = -padded.ctypes.data // padded.itemsize % LINE
-    return padded[begin : begin + numbers]
 
 
 def make_place(spec: Spec, eight: bool, fields: int) -> Any:
