@@ -64,6 +64,6 @@ def test_there_is_no_contact_from_the_step_on_that_begins_apart(
     met = int(np.argmax(apart < 0.0))
     left = met + int(np.argmax(apart[met:] > 0.0))
     assert met < left < len(apart) - 2
-    # Of each step the contact of its start: the one that meets begins apart, and what leaves ends so.
+    # The step that meets begins apart, and the one that leaves ends so.
     np.testing.assert_array_equal(states.step["contact_count"][left + 1 :], 0)
     np.testing.assert_array_equal(states.step["contact_count"][met : left + 1], 1)

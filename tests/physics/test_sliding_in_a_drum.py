@@ -52,7 +52,13 @@ def slide(begin: float, q: float, sign: float, end: float):
 
     stops.terminal, stops.direction = True, -1.0
     return solve_ivp(
-        law, (begin, end), (q, sign * 1e-13), events=stops, dense_output=True, rtol=1e-12, atol=1e-13
+        law,
+        (begin, end),
+        (q, sign * 1e-13),
+        events=stops,
+        dense_output=True,
+        rtol=1e-12,
+        atol=1e-13,
     )
 
 
@@ -67,7 +73,8 @@ def truth():
         return np.where(times < there.t[-1], there.sol(times)[0], back.sol(times)[0])
 
     # It slides back: friction does not hold it.
-    assert 0.9 < there.t[-1] < 1.1 and math.tan(-turned) > MU
+    assert 0.9 < there.t[-1] < 1.1
+    assert math.tan(-turned) > MU
     return angle, ARM * (RELEASED - turned + float(angle(np.array(DURATION))) - turned)
 
 

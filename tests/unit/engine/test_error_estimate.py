@@ -206,9 +206,11 @@ def pushing(scene: Drawn) -> np.ndarray:
             if np.hypot(contact["lambda_1"], contact["lambda_2"]) < most * (1.0 - 1e-9):
                 rows += [*own]
                 continue
-            with_friction = own[0] + (
-                contact["lambda_1"] * own[1] + contact["lambda_2"] * own[2]
-            ) / contact["lambda_n"]
+            with_friction = (
+                own[0]
+                + (contact["lambda_1"] * own[1] + contact["lambda_2"] * own[2])
+                / contact["lambda_n"]
+            )
             response, plain = (own[0] @ scene.inverse @ row for row in (with_friction, own[0]))
             rows.append(with_friction if response > RESPONDS * plain else own[0])
     return np.array(rows)
