@@ -1,6 +1,6 @@
 """Balls that give way as they meet keep momentum and angular momentum, with friction and spin.
 
-Both are pushed, and rubbed, at one point in the middle of what they are indented: the torques of
+Normal force and friction act at one point, in the middle of what they are indented: the torques of
 friction are then F_t times arms that end there, and what they change adds up to nothing. Were the
 arms as long as the radii, as those of rigid balls, F_t times the indentation would be won.
 """
