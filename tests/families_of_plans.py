@@ -149,7 +149,7 @@ FAMILIES = (
     Family(
         ("time/accuracy_of_energy", "time/accuracy_of_rolling"),
         (scenes.ACCURATE,),
-        (*BALLS_AND_BOXES, "cylinder_box", "cylinder_plane", "sphere_cylinder"),
+        (*BALLS_AND_BOXES, "cylinder_box", "cylinder_plane", "sphere_cylinder", "sphere_drum"),
         ("sleeping",),
     ),
     Family(texts=(scenes.BALLS,), shape_pairs=BALLS, effects=("broad_phase",)),

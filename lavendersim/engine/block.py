@@ -3,17 +3,19 @@
     v = (v_B + omega_B x r_B) - (v_A + omega_A x r_A)        relative velocity, world axes
     p = n lambda_n + t1 lambda_1 + t2 lambda_2               impulse on B, world axes; A gets -p
 Levers end on each body's own surface, so that a speculative contact has the levers it
-will have when the surfaces meet.
+will have when the surfaces meet. Surfaces that give way overlap by what they are indented: where
+both bodies move, both levers end in the middle of that, or friction would add angular momentum.
 """
 
 from __future__ import annotations
 
 from math import sqrt
+from typing import Any
 
 from .collide.nearest_image import place_beside
 from .compile import inner, kernel
 from .effects import made_once
-from .row_terms import row_terms
+from .row_terms import make_is_soft, row_terms
 from .spec import Spec
 from .tangents import first_tangent, second_tangent
 from .vectors import Vec3, cross, dot, plus_scaled
@@ -221,9 +223,14 @@ def make_complete_block(spec: Spec):
     swept, shifted = row_terms(spec).swept, row_terms(spec).shifted
     stretched, stretch_tangents = made_once(spec, "stretch_tangents")
     response, beside = make_block_response(spec), place_beside(spec)
+    springs: bool = row_terms(spec).elastic
+    is_soft: Any = make_is_soft(spec) if springs else None
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi
+        if springs:
+            if is_soft(pair) and body_a.inv_m > 0.0 and body_b.inv_m > 0.0:
+                half = 0.0
         x, y, z = contact.nx * half, contact.ny * half, contact.nz * half
         contact.rax = contact.x - x - body_a.x
         contact.ray = contact.y - y - body_a.y

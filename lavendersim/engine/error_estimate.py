@@ -11,7 +11,9 @@ no error of the timestep: below NOISE times their residual dv says nothing.
 At the end of a step a velocity violates its contacts by O(dt^2), because they hold at the middle;
 the next step begins with it and does not add to it. So dv is taken without the part that contacts
 would take away: with J (dv + M^-1 J^T p) = 0 of all rows that push or hold, and of tangents that
-stick. A motor that gives its most holds nothing.
+stick; where it slides, p has its friction: a velocity along a normal that alternates from substep
+to substep would else be seen, by friction, at every length. A motor that gives its most holds
+nothing.
 What bends of contact forces hide from both is added (`hidden_bends`).
 """
 
@@ -46,6 +48,9 @@ SWEEPS, JOINT_SWEEPS, BEYOND = 20, 3000, 1.5
 ENOUGH = 1e-3
 # A contact sticks by less than this share of the most that its friction may be.
 STICKS = 0.999
+# What slides is pushed with its friction where that leaves this share of the response along the
+# normal: beyond it jams (Painleve), and sweeps would not end.
+RESPONDS = 0.5
 
 # What a body has done since the run began.
 PATH: Final[list[Field]] = [
@@ -160,8 +165,21 @@ def make_respect_contacts(spec: Spec) -> Any:
         one, two, most = contact.lambda_1, contact.lambda_2, STICKS * contact.mu * contact.lambda_n
         return one * one + two * two < most * most
 
+    def with_friction(contact):
+        # The response along n to a push of 1 with the friction that it brings, and that friction.
+        if mixed:
+            if contact.frictional == 0:
+                return contact.k_n, 0.0, 0.0
+        if contact.lambda_n > 0.0 and not sticks(contact):
+            one, two = contact.lambda_1 / contact.lambda_n, contact.lambda_2 / contact.lambda_n
+            k = contact.k_n + contact.k_n1 * one + contact.k_n2 * two
+            if k > RESPONDS * contact.k_n:
+                return k, one, two
+        return contact.k_n, 0.0, 0.0
+
     if friction:
         sticks = kernel(sticks, spec)
+        with_friction = kernel(with_friction, spec)
 
     def respect_contacts(contacts, count, velocities, noise):
         for _ in range(most):
@@ -172,7 +190,11 @@ def make_respect_contacts(spec: Spec) -> Any:
                     va, vb = velocities[contact.a], velocities[contact.b]
                     v_n = normal_velocity(contact, va, vb)
                     largest = max(largest, abs(v_n))
-                    apply_block(contact, va, vb, -beyond * v_n / contact.k_n, 0.0, 0.0)
+                    k, one, two = contact.k_n, 0.0, 0.0
+                    if friction:
+                        k, one, two = with_friction(contact)
+                    push = -beyond * v_n / k
+                    apply_block(contact, va, vb, push, push * one, push * two)
                     if friction:
                         if sticks(contact):
                             x, y, z = relative_velocity(contact, va, vb)

@@ -87,7 +87,15 @@ def make_first_stop(spec: Spec) -> Any:
 
     params.dt: what is left of the step. Of rows that take part in it.
     """
-    from ..approach import CREEP, NEVER, SHORT, make_slowest, normal, relative_velocity
+    from ..approach import (
+        CREEP,
+        NEVER,
+        SHORT,
+        make_gap_acceleration,
+        make_slowest,
+        normal,
+        relative_velocity,
+    )
     from ..block import set_tangents
     from ..collide.nearest_image import place_beside
     from ..records import PLANE
@@ -96,6 +104,7 @@ def make_first_stop(spec: Spec) -> Any:
     from . import made_once
 
     slowest, vanishes, beside = make_slowest(spec), make_vanishes(spec), place_beside(spec)
+    gap_acceleration = make_gap_acceleration(spec)
     terms = row_terms(spec)
     rolling, torsional, yielding = terms.rolling, terms.torsional, terms.yielding
     is_soft: Any = make_is_soft(spec) if yielding else None
@@ -177,8 +186,12 @@ def make_first_stop(spec: Spec) -> Any:
                     continue
             least = slowest(contact, bodies, motion)
             # What nears or leaves is not pressed as the part begins: no friction of it can change.
+            # But what is pressed at the middle of a step, where normals turn, nears or leaves by
+            # what they turn in half a step; and what rolls there slips by as much.
             if abs(contact.rate) > least:
-                continue
+                turned = 0.5 * params.timestep * gap_acceleration(contact, bodies, motion)
+                if abs(contact.rate) > least + turned or dot(s, s) <= turned * turned:
+                    continue
             if dot(s, s) > least * least:
                 rate = slip_rate(contact, bodies)
                 first = min(first, vanishes(s, rate, least, left, shortest))

@@ -16,7 +16,7 @@ from interpreted import interpreted, records
 from plain_facts import one_row
 
 from lavendersim.engine import error_estimate
-from lavendersim.engine.error_estimate import NOISE, PATH, PLACE_NOISE, SWEEPS
+from lavendersim.engine.error_estimate import NOISE, PATH, PLACE_NOISE, RESPONDS, SWEEPS
 from lavendersim.engine.record_layout import allocate_bodies, allocate_velocities
 from lavendersim.engine.records import dtype
 from lavendersim.engine.spec import Spec
@@ -196,6 +196,26 @@ def sticking(scene: Drawn) -> np.ndarray:
     return scene.jacobian[rows]
 
 
+def pushing(scene: Drawn) -> np.ndarray:
+    """Return rows along which these are held: what slides is pushed with its friction."""
+    rows = []
+    for k, contact in enumerate(scene.contacts):
+        if contact["lambda_n"] > 0.0 and contact["gamma"] == 0.0:
+            own = scene.jacobian[3 * k : 3 * k + 3]
+            most = contact["mu"] * contact["lambda_n"]
+            if np.hypot(contact["lambda_1"], contact["lambda_2"]) < most * (1.0 - 1e-9):
+                rows += [*own]
+                continue
+            with_friction = (
+                own[0]
+                + (contact["lambda_1"] * own[1] + contact["lambda_2"] * own[2])
+                / contact["lambda_n"]
+            )
+            response, plain = (own[0] @ scene.inverse @ row for row in (with_friction, own[0]))
+            rows.append(with_friction if response > RESPONDS * plain else own[0])
+    return np.array(rows)
+
+
 def scene_of(rng: np.random.Generator, slides: bool) -> Drawn:
     """Return two free bodies and one that is fixed; a third contact is compliant, a fourth idle."""
     scene = drawn(SPEC, rng, [(0, 1), (1, 2), (2, 0), (2, 1)])
@@ -211,12 +231,15 @@ def scene_of(rng: np.random.Generator, slides: bool) -> Drawn:
 
 @pytest.mark.parametrize("slides", [False, True])
 def test_contacts_take_from_differences_what_is_across_them(slides: bool, rng) -> None:
-    """What is left is the projection in the metric of the mass: least change with J dv = 0."""
+    """What is left is J dv = 0 by impulses of contacts: along what holds, and against what slides.
+
+    Where nothing slides that is the projection in the metric of the mass, the least change.
+    """
     for _ in range(3):
         scene = scene_of(rng, slides)
-        held = sticking(scene)
-        w = held @ scene.inverse @ held.T
-        expected = scene.motion - scene.inverse @ held.T @ np.linalg.solve(w, held @ scene.motion)
+        held, response = sticking(scene), scene.inverse @ pushing(scene).T
+        impulses = np.linalg.solve(held @ response, held @ scene.motion)
+        expected = scene.motion - response @ impulses
         _, velocities, contacts = views(scene)
         for _ in range(200):  # sweeps of SWEEPS, until nothing changes
             RESPECT(contacts, 4, velocities, 0.0)
