@@ -47,6 +47,24 @@ def test_a_way_beyond_the_end_of_the_run_is_not_known() -> None:
     assert math.isnan(evaluate(specs.Displacement.model_validate(tupled(spec)), log))
 
 
+def test_a_centre_of_mass_is_weighed_and_its_mean_is_over_time() -> None:
+    bodies = {"light": CUBE, "heavy": CUBE | {"mass": 3.0}}
+    places = [[[0, 0, 0], [4, 0, 0]], [[0, 0, 0], [8, 0, 0]], [[0, 0, 0], [8, 0, 0]]]
+    log = log_of(scene_of(bodies), places)
+    spec = {"kind": "centre_of_mass", "along": [2, 0, 0]}
+
+    def found(**more: Any) -> float:
+        return evaluate(specs.CentreOfMass.model_validate(tupled(spec | more)), log)
+
+    # 3 m, then 6 m; the mean over the first step of two is 4.5 m
+    assert found() == pytest.approx(0.5 * (4.5 + 6.0), rel=1e-14)
+    assert found(bodies=("light",)) == 0.0
+    assert found(bodies=("heavy",), **{"from": 0.01}) == pytest.approx(8.0, rel=1e-14)
+    assert math.isnan(found(to=1.0))
+    with pytest.raises(ValidationError, match="expected `from` before `to`"):
+        found(**{"from": 0.02, "to": 0.01})
+
+
 @pytest.mark.parametrize("rate", [-200.0, 1e-6, 3.0, 300.0])
 def test_turns_add_up_to_the_rate(rate: float) -> None:
     log = turning(rate, [0.0, HALF, HALF], 40)
