@@ -56,7 +56,7 @@ def steady_torque(spec: specs.SteadyTorque, trace: Trace) -> float:
 
 
 def _angular_impulses(rows: Rows) -> Floats:
-    """Return the angular impulse on B of each contact [N m s] (n, 3), where surfaces pass one on."""
+    """Return the angular impulse on B of each contact [N m s] (n, 3); 0 without columns of one."""
     names = set(rows.dtype.names or ())
     normals = np.column_stack([rows[f"n{axis}"] for axis in "xyz"])
     total: Floats = np.zeros_like(normals)

@@ -24,7 +24,7 @@ class SteadyForce(PairMeasure):
 class SteadyTorque(PairMeasure):
     """Mean torque [N m] of contacts on the body about its centre, as the run ends.
 
-    Of normal forces and friction, couples of torsional and rolling friction and of patches included.
+    Of normal forces and friction, with the couples of torsional and rolling friction and patches.
     """
 
     READS = EVERYTHING
