@@ -10,6 +10,7 @@ import pytest
 from pydantic import ValidationError
 from synthetic import log_of, scene_of
 
+from lavendersim.errors import UsageError
 from lavendersim.measures import evaluate
 from lavendersim.measures.specs import kinematics as specs
 
@@ -63,6 +64,16 @@ def test_a_centre_of_mass_is_weighed_and_its_mean_is_over_time() -> None:
     assert math.isnan(found(to=1.0))
     with pytest.raises(ValidationError, match="expected `from` before `to`"):
         found(**{"from": 0.02, "to": 0.01})
+
+
+def test_a_centre_of_mass_has_one_mass_of_each_body() -> None:
+    bodies = {"light": CUBE, "heavy": CUBE | {"mass": 3.0}}
+    change = {"body": "heavy", "at": 0.01, "scale_mass": 2.0}
+    log = log_of(scene_of(bodies) | {"events": [change]}, np.zeros((3, 2, 3)))
+    spec = {"kind": "centre_of_mass", "along": (1.0, 0.0, 0.0)}
+    with pytest.raises(UsageError, match="an event changes heavy's"):
+        evaluate(specs.CentreOfMass.model_validate(spec), log)
+    assert evaluate(specs.CentreOfMass.model_validate(spec | {"bodies": ("light",)}), log) == 0.0
 
 
 @pytest.mark.parametrize("rate", [-200.0, 1e-6, 3.0, 300.0])
