@@ -1,4 +1,4 @@
-"""Measures of other measures: a ratio, a difference, a number of a row."""
+"""Measures of other measures: a ratio, a difference, a power, a number of a row."""
 
 from __future__ import annotations
 
@@ -33,6 +33,11 @@ def derived(spec: specs.OfMeasures, rows: Sequence[Floats]) -> Floats:
         if np.isnan(row).any():  # also of `first`: the row is no whole one
             return np.array([np.nan])
         return np.atleast_1d(np.asarray(STATISTICS[spec.of](row), np.float64))
+    if isinstance(spec, specs.Power):
+        (row,) = rows
+        with np.errstate(invalid="ignore", divide="ignore"):
+            powers = np.power(row, spec.exponent)
+        return np.where(np.isinf(powers), np.nan, powers)
     left, right = rows
     if len(left) != len(right) and 1 not in (len(left), len(right)):
         names = " and ".join(f"{n} has {len(r)}" for n, r in zip(spec.operands, rows, strict=True))

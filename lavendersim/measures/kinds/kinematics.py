@@ -9,6 +9,9 @@ import math
 
 import numpy as np
 
+from lavendersim.cell import changes_of_bodies
+from lavendersim.errors import UsageError
+from lavendersim.geometry.bodies import mass_of
 from lavendersim.geometry.rotations import rotation_matrix, turns_between, unit_quaternion
 from lavendersim.measures.columns import body_columns
 from lavendersim.measures.interfaces import Floats, Trace
@@ -50,6 +53,28 @@ def mean_angular_velocity(spec: specs.MeanAngularVelocity, trace: Trace) -> floa
     stretch = np.where(size > 0.0, angle / np.where(size > 0.0, size, 1.0), 2.0)
     along = _unit(spec.along)
     return float((stretch * (vector @ along)).sum()) / _seconds(trace, *rows)
+
+
+@measure(specs.CentreOfMass)
+def centre_of_mass(spec: specs.CentreOfMass, trace: Trace) -> float:
+    """Return the mean of sum(m x)/sum(m) along the direction [m], by the trapezoidal rule.
+
+    UsageError where an event changes the mass of one of the bodies; NaN when the run ends before.
+    """
+    rows = _rows(trace, spec.begin, spec.end)
+    columns = body_columns(trace, spec.bodies)
+    if not rows or not columns:
+        return NAN
+    names = [trace.bodies[column] for column in columns]
+    for event in changes_of_bodies(trace.events):
+        if event.body in names and (event.remove or event.scale_mass is not None):
+            raise UsageError(f"centre_of_mass takes one mass, and an event changes {event.body}'s")
+    masses = np.array([mass_of(trace.config.scene.bodies[name]) for name in names])
+    window = slice(rows[0], rows[1] + 1)
+    centres = trace.pose[window, columns, :3] @ _unit(spec.along) @ (masses / masses.sum())
+    steps = np.asarray(trace.step["step"])[window]
+    lengths = trace.clock.elapsed(steps[:-1], steps[1:])
+    return float(0.5 * (centres[:-1] + centres[1:]) @ lengths) / _seconds(trace, *rows)
 
 
 @measure(specs.TopSpeed)

@@ -1,16 +1,19 @@
-"""Steady force, penetration and settling time of a body that comes to rest."""
+"""Steady force, torque, penetration and settling time of a body that comes to rest."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from lavendersim.geometry.periodic_cell import nearest_images
 from lavendersim.measures.columns import (
     contacts_of,
     deepest_by_step,
+    impulses,
     last_window,
+    rows_of_steps,
     summed_by_step,
 )
-from lavendersim.measures.interfaces import Trace
+from lavendersim.measures.interfaces import Floats, Rows, Trace
 from lavendersim.measures.registration import measure
 from lavendersim.measures.specs import steady as specs
 
@@ -28,6 +31,43 @@ def steady_force(spec: specs.SteadyForce, trace: Trace) -> float:
     if spec.statistic == "mean":
         return mean
     return float(forces[np.argmax(np.abs(forces - mean))])
+
+
+@measure(specs.SteadyTorque)
+def steady_torque(spec: specs.SteadyTorque, trace: Trace) -> float:
+    """Return the mean torque [N m] of the last window along an axis; NaN without contact.
+
+    r x p + c of each contact, r from the centre as the step ends to the point, p and c its impulse
+    and angular impulse on the body.
+    """
+    rows, window = contacts_of(trace, spec.body, spec.other), last_window(trace, spec.last)
+    if not window.any() or len(rows) == 0:
+        return NAN
+    index, steps = list(trace.bodies).index(spec.body), rows_of_steps(trace.step, rows)
+    points = np.column_stack([rows[axis] for axis in "xyz"])
+    centres = trace.pose[steps, index, :3]
+    levers = points - nearest_images(centres, points, trace.config.scene.periodic)
+    turned = np.cross(levers, impulses(rows)) + _angular_impulses(rows)
+    along = np.asarray(spec.along) / np.linalg.norm(spec.along)
+    on_body = np.where(rows["body_b"] == index, 1.0, -1.0) * (turned @ along)
+    by_step = np.bincount(steps, on_body, len(trace.step))
+    time = trace.clock.lengths(trace.step["step"][window]).sum()
+    return float(by_step[window].sum() / time)
+
+
+def _angular_impulses(rows: Rows) -> Floats:
+    """Return the angular impulse on B of each contact [N m s] (n, 3); 0 without columns of one."""
+    names = set(rows.dtype.names or ())
+    normals = np.column_stack([rows[f"n{axis}"] for axis in "xyz"])
+    total: Floats = np.zeros_like(normals)
+    for about_normal in ("angular_impulse_n", "patch_impulse_n"):
+        if about_normal in names:
+            total += normals * rows[about_normal][:, None]
+    if "angular_impulse_t1" in names:
+        first = np.column_stack([rows[f"t1{axis}"] for axis in "xyz"])
+        total += first * rows["angular_impulse_t1"][:, None]
+        total += np.cross(normals, first) * rows["angular_impulse_t2"][:, None]
+    return total
 
 
 @measure(specs.SteadyPenetration)

@@ -1,4 +1,4 @@
-"""Models of measures of other measures: a ratio, a difference, a number of a row.
+"""Models of measures of other measures: a ratio, a difference, a power, a number of a row.
 
 measure:
   hard: {kind: impact_impulse, body: ball}
@@ -8,12 +8,13 @@ measure:
 
 from __future__ import annotations
 
-from typing import Final, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
 from lavendersim.measures.specs.base import Measure
 from lavendersim.quantities.names import MeasureName
+from lavendersim.quantities.quantity import Quantity
 from lavendersim.quantities.readings import SUMS
 
 OPERANDS: Final = ("measure", "to", "minus")  # keys that name a measure
@@ -57,6 +58,17 @@ class DifferenceOf(OfMeasures):
     def operands(self) -> tuple[str, ...]:
         """The measures it is of."""
         return (self.measure, self.minus)
+
+
+class Power(OfMeasures):
+    """A measure to a power, such as 2/3; NaN of 0 to one below 0. Of rows number by number.
+
+    NaN of what is negative, unless the power is whole.
+    """
+
+    NO_NUMBER = "what it is of is no number, or has no such power"
+    kind: Literal["power"]
+    exponent: Annotated[float, Quantity()] = Field(description="the power [-]")
 
 
 class OfRow(OfMeasures):

@@ -14,6 +14,11 @@ from lavendersim.quantities.readings import POSES
 Direction = Annotated[Vector3, Vector(3, Quantity())]
 
 
+def _later(begin: float, end: float | None) -> None:
+    if end is not None and end <= begin:
+        raise sentence_error("expected `from` before `to`")
+
+
 class _Between(Measure):
     """A measure of the motion between two times."""
 
@@ -27,8 +32,7 @@ class _Between(Measure):
 
     @model_validator(mode="after")
     def _forward(self) -> Self:
-        if self.end is not None and self.end <= self.begin:
-            raise sentence_error("expected `from` before `to`")
+        _later(self.begin, self.end)
         return self
 
 
@@ -63,6 +67,28 @@ class MeanAngularVelocity(_Along):
     """
 
     kind: Literal["mean_angular_velocity"]
+
+
+class CentreOfMass(Measure):
+    """Component [m] of the common centre of mass of bodies: its mean between two times."""
+
+    READS = POSES
+    kind: Literal["centre_of_mass"]
+    bodies: tuple[BodiesName, ...] = Field(
+        default=(), description="which, also arrangements; all movable bodies when absent"
+    )
+    along: Annotated[Vector3, Vector(3, Quantity(), nonzero=True)] = Field(
+        description="direction, world frame; its length does not matter"
+    )
+    begin: Seconds = Field(default=0.0, alias="from", description="first time [s]")
+    end: Seconds | None = Field(
+        default=None, alias="to", description="second time [s]; the end of the run when absent"
+    )
+
+    @model_validator(mode="after")
+    def _forward(self) -> Self:
+        _later(self.begin, self.end)
+        return self
 
 
 class TopSpeed(Measure):

@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lavendersim.measures.specs.base import Measure, PairMeasure, Seconds
-from lavendersim.quantities.quantity import Quantity
-from lavendersim.quantities.readings import SUMS
+from lavendersim.quantities.quantity import Direction, Quantity
+from lavendersim.quantities.readings import EVERYTHING, SUMS
 
 
 class SteadyForce(PairMeasure):
@@ -19,6 +19,18 @@ class SteadyForce(PairMeasure):
     statistic: Literal["mean", "furthest"] = Field(
         default="mean", description="mean of the window, or its value furthest from that mean"
     )
+
+
+class SteadyTorque(PairMeasure):
+    """Mean torque [N m] of contacts on the body about its centre, as the run ends.
+
+    Of normal forces and friction, with the couples of torsional and rolling friction and patches.
+    """
+
+    READS = EVERYTHING
+    kind: Literal["steady_torque"]
+    along: Direction = Field(description="axis, world frame; right-handed; is normalised")
+    last: Seconds = Field(default=0.25, description="length of the window at the end [s]")
 
 
 class SteadyPenetration(PairMeasure):

@@ -7,7 +7,7 @@ import pytest
 
 from lavendersim.errors import LavenderError
 from lavendersim.measures.kinds.arithmetic import derived
-from lavendersim.measures.specs.arithmetic import DifferenceOf, OfRow, Ratio
+from lavendersim.measures.specs.arithmetic import DifferenceOf, OfRow, Power, Ratio
 
 NAN = float("nan")
 RATIO = Ratio(kind="ratio", measure="a", to="b")
@@ -34,6 +34,16 @@ def test_one_number_stands_beside_every_number_of_a_row(
 def test_rows_of_other_lengths_are_refused_by_name() -> None:
     with pytest.raises(LavenderError, match="a has 2 and b has 3 numbers"):
         derived(RATIO, [np.ones(2), np.ones(3)])
+
+
+def test_a_power_is_one_of_each_number_and_none_where_there_is_none() -> None:
+    def to(exponent: float) -> list[float]:
+        spec = Power(kind="power", measure="a", exponent=exponent)
+        return derived(spec, [np.array([4.0, 0.0, -2.0])]).tolist()
+
+    np.testing.assert_array_equal(to(0.5), [2.0, 0.0, NAN])
+    np.testing.assert_array_equal(to(2.0), [16.0, 0.0, 4.0])
+    np.testing.assert_array_equal(to(-1.0), [0.25, NAN, -0.5])
 
 
 @pytest.mark.parametrize(

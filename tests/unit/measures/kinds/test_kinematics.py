@@ -10,6 +10,7 @@ import pytest
 from pydantic import ValidationError
 from synthetic import log_of, scene_of
 
+from lavendersim.errors import UsageError
 from lavendersim.measures import evaluate
 from lavendersim.measures.specs import kinematics as specs
 
@@ -45,6 +46,34 @@ def test_a_way_beyond_the_end_of_the_run_is_not_known() -> None:
     spec = {"kind": "displacement", "body": "cube", "to": 0.04, "along": [1, 0, 0]}
     log = moving(np.zeros((4, 3)))
     assert math.isnan(evaluate(specs.Displacement.model_validate(tupled(spec)), log))
+
+
+def test_a_centre_of_mass_is_weighed_and_its_mean_is_over_time() -> None:
+    bodies = {"light": CUBE, "heavy": CUBE | {"mass": 3.0}}
+    places = [[[0, 0, 0], [4, 0, 0]], [[0, 0, 0], [8, 0, 0]], [[0, 0, 0], [8, 0, 0]]]
+    log = log_of(scene_of(bodies), places)
+    spec = {"kind": "centre_of_mass", "along": [2, 0, 0]}
+
+    def found(**more: Any) -> float:
+        return evaluate(specs.CentreOfMass.model_validate(tupled(spec | more)), log)
+
+    # 3 m, then 6 m; the mean over the first step of two is 4.5 m
+    assert found() == pytest.approx(0.5 * (4.5 + 6.0), rel=1e-14)
+    assert found(bodies=("light",)) == 0.0
+    assert found(bodies=("heavy",), **{"from": 0.01}) == pytest.approx(8.0, rel=1e-14)
+    assert math.isnan(found(to=1.0))
+    with pytest.raises(ValidationError, match="expected `from` before `to`"):
+        found(**{"from": 0.02, "to": 0.01})
+
+
+def test_a_centre_of_mass_has_one_mass_of_each_body() -> None:
+    bodies = {"light": CUBE, "heavy": CUBE | {"mass": 3.0}}
+    change = {"body": "heavy", "at": 0.01, "scale_mass": 2.0}
+    log = log_of(scene_of(bodies) | {"events": [change]}, np.zeros((3, 2, 3)))
+    spec = {"kind": "centre_of_mass", "along": (1.0, 0.0, 0.0)}
+    with pytest.raises(UsageError, match="an event changes heavy's"):
+        evaluate(specs.CentreOfMass.model_validate(spec), log)
+    assert evaluate(specs.CentreOfMass.model_validate(spec | {"bodies": ("light",)}), log) == 0.0
 
 
 @pytest.mark.parametrize("rate", [-200.0, 1e-6, 3.0, 300.0])

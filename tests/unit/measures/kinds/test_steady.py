@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from numpy.lib.recfunctions import append_fields
 from synthetic import GRAVITY, MASS, RESIDUAL, trace_of
 
 from lavendersim.measures import evaluate
@@ -17,6 +18,7 @@ from lavendersim.measures.specs.steady import (
     SimulatedDuration,
     SteadyForce,
     SteadyPenetration,
+    SteadyTorque,
 )
 
 
@@ -41,6 +43,37 @@ def test_furthest_force_is_the_value_furthest_from_the_mean() -> None:
 def test_a_window_longer_than_the_run_is_no_answer() -> None:
     spec = SteadyForce(kind="steady_force", body="ball", last=5.0)
     assert math.isnan(evaluate(spec, resting()))
+
+
+def aside(**more: float) -> object:
+    """A ball whose centre is at (0, 0, 1) m, pushed up by 2 N at (0.3, 0, 0) m; columns beside."""
+    log = trace_of([1.0 - 0.1] * 11, [(step, 0.02, 0.0) for step in range(1, 11)])
+    columns = {"x": 0.3, "y": 0.0, "z": 0.0} | more
+    full = [np.full(len(log.contact), value) for value in columns.values()]
+    log.contact = append_fields(log.contact, list(columns), full, usemask=False)
+    return log
+
+
+def torque(log: object, body: str, along: tuple[float, float, float]) -> float:
+    kind = {"kind": "steady_torque", "body": body, "along": along, "last": 0.05}
+    return evaluate(SteadyTorque.model_validate(kind), log)
+
+
+def test_steady_torque_is_that_on_the_body_about_its_centre() -> None:
+    # (0.3, 0, -1) x (0, 0, 2) = (0, -0.6, 0); on the floor, whose place is the origin, as much back
+    assert torque(aside(), "ball", (0.0, 3.0, 0.0)) == pytest.approx(-0.6, rel=1e-14)
+    assert torque(aside(), "floor", (0.0, 3.0, 0.0)) == pytest.approx(0.6, rel=1e-14)
+    assert torque(aside(), "ball", (0.0, 0.0, 1.0)) == 0.0
+
+
+def test_steady_torque_has_the_couples_of_surfaces() -> None:
+    spun = aside(angular_impulse_n=0.003, patch_impulse_n=0.001)  # about z, each 10 ms
+    assert torque(spun, "ball", (0.0, 0.0, 1.0)) == pytest.approx(0.4, rel=1e-14)
+    frame = {"t1x": 0.0, "t1y": 1.0, "t1z": 0.0, "impulse_t1": 0.0, "impulse_t2": 0.0}
+    rolled = aside(**frame, angular_impulse_t1=0.002, angular_impulse_t2=0.005)
+    # t2 = n x t1 = -x
+    assert torque(rolled, "ball", (0.0, 1.0, 0.0)) == pytest.approx(0.2 - 0.6, rel=1e-14)
+    assert torque(rolled, "ball", (1.0, 0.0, 0.0)) == pytest.approx(-0.5, rel=1e-14)
 
 
 def test_steady_penetration_with_and_without_the_slop() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from lavendersim.measures.specs.arithmetic import OPERANDS, DifferenceOf, OfRow, Ratio
+from lavendersim.measures.specs.arithmetic import OPERANDS, DifferenceOf, OfRow, Power, Ratio
 from lavendersim.measures.specs.base import Measure
 from lavendersim.quantities.readings import SUMS
 from tests.marked_config import assert_refused, config
@@ -16,6 +16,7 @@ from tests.marked_config import assert_refused, config
         (Ratio(kind="ratio", measure="a", to="b"), ("a", "b")),
         (DifferenceOf(kind="difference", measure="a", minus="b"), ("a", "b")),
         (OfRow(kind="of_row", measure="a", of="max"), ("a",)),
+        (Power(kind="power", measure="a", exponent=0.5), ("a",)),
     ],
 )
 def test_operands_are_the_names_under_their_keys(spec: Measure, operands: tuple[str, ...]) -> None:
