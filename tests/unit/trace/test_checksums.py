@@ -1,0 +1,55 @@
+"""The folded CRC-32 is zlib's, of data of any length and behind any other."""
+
+from __future__ import annotations
+
+import zlib
+
+import numba  # noqa: F401  (where it is loaded, long data is folded)
+import numpy as np
+import pytest
+
+from lavendersim.trace import checksums
+from lavendersim.trace.checksums import ALL_ONES, LONG, crc32, folded
+
+# One loop of four blocks, none, several, each with and without bytes behind it.
+LENGTHS = (64, 65, 127, 128, 191, 192, 1000, 65537)
+BEFORE = (0, 1, ALL_ONES, 0x12345678)
+
+
+def random_bytes(length: int) -> bytes:
+    return np.random.default_rng(length).bytes(length)
+
+
+def test_folded_sums_are_those_of_zlib() -> None:
+    fold = checksums.machine_code()
+    if fold is None:
+        pytest.skip("this processor has no carry-less product")
+    for length in LENGTHS:
+        data = random_bytes(length)
+        for before in BEFORE:
+            assert folded(fold, data, before) == zlib.crc32(data, before), (length, before)
+
+
+def test_data_of_zeros_and_of_ones_is_summed_as_zlib_does() -> None:
+    for byte in (b"\x00", b"\xff"):
+        data = byte * (LONG + 7)
+        assert crc32(data) == zlib.crc32(data)
+
+
+def test_long_data_is_summed_in_parts_as_in_one_from_any_buffer() -> None:
+    data = random_bytes(2 * LONG + 5)
+    whole = zlib.crc32(data)
+    assert crc32(memoryview(data)) == whole
+    assert crc32(data[LONG + 3 :], crc32(data[: LONG + 3])) == whole
+    assert crc32(data[:10]) == zlib.crc32(data[:10])
+
+
+def test_other_processors_leave_it_to_zlib(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("platform.machine", lambda: "arm64")
+    checksums._fold.cache_clear()
+    data = random_bytes(LONG)
+    try:
+        assert checksums._fold() is None
+        assert crc32(data) == zlib.crc32(data)
+    finally:
+        checksums._fold.cache_clear()
