@@ -9,11 +9,16 @@ import numpy as np
 import pytest
 
 from lavendersim.trace import checksums
-from lavendersim.trace.checksums import ALL_ONES, LONG, crc32, folded
+from lavendersim.trace.checksums import ALL_ONES, LONG, WORTH, crc32, folded
 
 # One loop of four blocks, none, several, each with and without bytes behind it.
 LENGTHS = (64, 65, 127, 128, 191, 192, 1000, 65537)
 BEFORE = (0, 1, ALL_ONES, 0x12345678)
+
+
+@pytest.fixture(autouse=True)
+def _much_was_had(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(checksums, "_had", WORTH)
 
 
 def random_bytes(length: int) -> bytes:
@@ -53,3 +58,13 @@ def test_other_processors_leave_it_to_zlib(monkeypatch: pytest.MonkeyPatch) -> N
         assert crc32(data) == zlib.crc32(data)
     finally:
         checksums._fold.cache_clear()
+
+
+def test_a_process_that_has_little_of_it_makes_no_machine_code(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(checksums, "_had", 0)
+    monkeypatch.setattr(checksums, "_fold", lambda: pytest.fail("it takes longer than zlib"))
+    data = random_bytes(LONG)
+    assert crc32(data) == zlib.crc32(data)
+    assert checksums._had == LONG
