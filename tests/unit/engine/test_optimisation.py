@@ -36,8 +36,8 @@ def optimised_as_for_users(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_calls_and_lengths_are_those_of_the_text():
     text = function("a.b", calls=("a long name", "plain", "plain"))
     text += function("plain", lines=3) + function("a long name")
-    calls, lengths = counted(str(parse_assembly(text)))
-    assert calls == {"plain": 2, "a long name": 1}
+    called, lengths = counted(str(parse_assembly(text)))
+    assert called == {"a.b": {"plain": 2, "a long name": 1}, "plain": {}, "a long name": {}}
     # every block has its end, `ret`; no label is written where a function has one block
     assert lengths == {"a.b": 4, "plain": 4, "a long name": 1}
 
