@@ -45,6 +45,9 @@ from lavender_cli import (
 # larger pages save nothing, and to find memory for them took a third of the processor time of a run
 # on a virtual machine. Numpy reads this as it is loaded; who has set it keeps it.
 os.environ.setdefault("NUMPY_MADVISE_HUGEPAGE", "0")
+# Threads of numpy's BLAS wait for work in a loop, a tenth of a second of the processor in each
+# command. Matrices here are of few rows, and what several threads add up has other bits.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Of pydantic's plugins none is looked for: to ask each distribution takes as long as most checks.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 

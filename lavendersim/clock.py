@@ -13,7 +13,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable
 from fractions import Fraction
-from math import ceil, floor, lcm
+from math import ceil, floor, gcd, lcm
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -158,12 +158,19 @@ def _nanoseconds(stretch: Stretch, steps: np.ndarray) -> np.ndarray:
     rest = stretch.begin - seconds
     scale = lcm(rest.denominator, stretch.timestep.denominator)
     begin, length = int(rest * scale) * NANOSECONDS, int(stretch.timestep * scale) * NANOSECONDS
+    common = gcd(length, begin, scale)  # steps of 1/250 s are whole nanoseconds, without a division
+    length, begin, scale = length // common, begin // common, scale // common
+    steps = np.ascontiguousarray(steps)  # read more than once
     most = int(steps.max(initial=1))
     if most * length + begin < 2**62:
-        times = (steps * length + begin) // scale
+        times = steps * length
+        if begin:
+            times += begin
+        if scale > 1:
+            times //= scale
     elif scale * length + begin < 2**62:
         whole, left = np.divmod(steps, scale)
         times = whole * length + (left * length + begin) // scale
     else:  # Timesteps such as 0.0041666666, or many changes, have denominators beyond 64 bits.
         times = np.array([(int(step) * length + begin) // scale for step in steps], np.int64)
-    return np.asarray(times + seconds * NANOSECONDS, np.int64)
+    return np.asarray(times + seconds * NANOSECONDS if seconds else times, np.int64)

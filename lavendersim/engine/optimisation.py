@@ -24,6 +24,9 @@ LEVEL: Final = 1
 # a step with 60, 6.0 with 200, and a pile of balls 3 % less with 260 than with 200; from 320 on
 # modules take twice the time, for nothing.
 SHORT: Final = 260
+# And lines with all that is merged into it, of what is called more than once: the solve of a round
+# scene is 250 lines that call a solver of 25,000, from six places.
+MOST: Final = 5000
 SELDOM_SHORT: Final = 42  # of what is seldom called: half as long, and compiled in half the time
 _SYMBOL = r'@("[^"]*"|[-\w.$]+)\('
 _CALL = re.compile(r"call [^@\n]*" + _SYMBOL)
@@ -43,8 +46,8 @@ def optimise(
     """
     inner = []
     for function in module.functions:
-        merged = function.name in parts or function.linkage == Linkage.linkonce_odr
-        if merged and not function.is_declaration:
+        is_part = function.name in parts or function.linkage == Linkage.linkonce_odr
+        if is_part and not function.is_declaration:
             function.linkage = Linkage.internal
         if function.linkage == Linkage.internal:
             inner.append(function)
@@ -53,9 +56,9 @@ def optimise(
         passes, builder = codegen._module_pass_manager(opt=level)
         passes.run(module, builder)
         return
-    calls, lengths = counted(str(module))
+    merged = merged_in(str(module), {function.name for function in inner}, short)
     for function in inner:
-        if calls[function.name] == 1 or lengths[function.name] < short:
+        if function.name in merged:
             function.add_function_attribute("alwaysinline")
     builder = codegen._pass_builder(opt=level)
     merging = create_new_module_pass_manager()
@@ -68,8 +71,45 @@ def optimise(
             passes.run(function, builder)
 
 
-def counted(text: str) -> tuple[Counter[str], dict[str, int]]:
-    """Return of a module's text how often each function is called, and how long each one is."""
-    calls = Counter(symbol.strip('"') for symbol in _CALL.findall(text))
-    lengths = {found[1].strip('"'): found[2].count("\n") for found in _FUNCTION.finditer(text)}
-    return calls, lengths
+def merged_in(text: str, inner: set[str], short: int) -> set[str]:
+    """Return which of a module's inner functions are merged into their callers.
+
+    Those that are called once; and those shorter than `short`, but for what is so long in them that
+    they have MOST lines.
+    """
+    called, lengths = counted(text)
+    calls = sum(called.values(), Counter[str]())
+    whole: dict[str, int] = {}  # lines of each with what is merged into it
+    merged: set[str] = set()
+
+    def decide(name: str) -> None:
+        length = lines = whole[name] = lengths[name]
+        for other, times in called[name].items():
+            if other in lengths and other not in whole:
+                decide(other)
+            if other in merged:
+                lines += times * whole[other]
+        if length < short and calls[name] > 1:
+            own = [one for one in called[name] if one in merged and calls[one] == 1]
+            for other in sorted(own, key=lambda one: (-whole[one], one)):
+                if lines >= MOST:
+                    merged.remove(other)
+                    lines -= whole[other]
+        whole[name] = lines
+        if name in inner and (calls[name] == 1 or (length < short and lines < MOST)):
+            merged.add(name)
+
+    for name in lengths:
+        if name not in whole:
+            decide(name)
+    return merged
+
+
+def counted(text: str) -> tuple[dict[str, Counter[str]], dict[str, int]]:
+    """Return of a module's text how often each function calls which, and how long each one is."""
+    bodies = {found[1].strip('"'): found[2] for found in _FUNCTION.finditer(text)}
+    called = {
+        name: Counter(symbol.strip('"') for symbol in _CALL.findall(body))
+        for name, body in bodies.items()
+    }
+    return called, {name: body.count("\n") for name, body in bodies.items()}

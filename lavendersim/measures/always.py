@@ -8,6 +8,7 @@ bound was stopped there: it is the last state of its log.
 from __future__ import annotations
 
 from functools import lru_cache
+from math import isnan
 from typing import NamedTuple
 
 import numpy as np
@@ -68,13 +69,21 @@ class WorstStates:
         self._found: dict[str, _Worst] = {}
         self.not_reported: dict[str, str] = {}  # checks that the engine does not report enough for
 
-    def take(self, one: CheckedSteps, section: Trace, first: int, end: int) -> None:
-        """Count the states first..end-1 of a section in."""
+    def take(
+        self,
+        one: CheckedSteps,
+        section: Trace,
+        first: int,
+        end: int,
+        most: float | None = None,
+    ) -> None:
+        """Count the states first..end-1 of a section in; most: their largest number, if known."""
         if first >= end:
             return
         numbers = one.numbers[first:end]
         known = self._found.get(one.check) or _Worst(one.bound, one.unit)
-        largest = float(numbers.max(initial=known.number))
+        most = float(numbers.max()) if most is None else most
+        largest = known.number if known.number >= most or isnan(known.number) else most
         known = _Worst(known.bound, known.unit, largest, known.first, known.time)
         if not known.first and not known.number <= one.bound:
             row = int(np.flatnonzero(~(numbers <= one.bound))[0]) + first

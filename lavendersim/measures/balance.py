@@ -103,7 +103,8 @@ def momentum_imbalance(trace: Trace, sums: ContactSums, passes: Passes = OVER_LO
         elapsed=trace.clock.elapsed(step["step"][:-1], step["step"][1:]),
     )
     gaps = passes.imbalance(rows)
-    gaps[changes.unknown_momentum(trace)] = 0.0
+    if trace.events:
+        gaps[changes.unknown_momentum(trace)] = 0.0
     return gaps
 
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from math import isnan
 from types import MappingProxyType
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from .limits_reached import AT_LIMIT
 
+NOT_CONVERGED: Final = "not_converged"
 # Of what /step has the largest value, and the logged contact that has it.
 PARTS: Final = ("residual", "signorini", "cone", "dissipation")
 
@@ -39,37 +42,41 @@ class Accuracy(NamedTuple):
 
         contact: rows of their contacts, names: of the bodies that these speak of.
         """
+        from .largest_kernel import largest_of  # late: runs are listed without numba
+
+        worst = {} if contact is None else dict(self.worst)
+        limits = dict(self.at_limit)
+        if len(step) == 0:
+            return self._replace(worst=worst, at_limit=limits)
+        parts, counted = _columns(step.dtype)
+        found = largest_of(step, ("residual", *parts), counted)
         missed = self.not_converged or 0
         if self.tolerance is not None:
-            missed += int(np.count_nonzero(step["not_converged"]))
-        worst = step["residual"].max(initial=self.worst_residual)
+            missed += found.steps[counted.index(NOT_CONVERGED)]
+        residual = float(step["residual"][found.rows[0]])
+        for part, row in zip(parts, found.rows[1:], strict=True):
+            if contact is None:
+                break
+            value, before = float(step[part][row]), worst.get(part)
+            if before is None or value > before.value or isnan(value):
+                at = int(step["step"][row]), int(step[f"{part}_contact"][row])
+                worst[part] = Worst(value, _pair(contact, *at, names))
+        for column, count in zip(counted, found.sums, strict=True):
+            if column in AT_LIMIT and count:
+                limits[column] = limits.get(column, 0) + count
+        if not (residual > self.worst_residual or isnan(residual)):
+            residual = self.worst_residual
         return self._replace(
-            worst_residual=float(worst),
-            not_converged=missed,
-            worst={} if contact is None else self._worst(step, contact, names),
-            at_limit=self._at_limit(step),
+            worst_residual=residual, not_converged=missed, worst=worst, at_limit=limits
         )
 
-    def _at_limit(self, step: np.ndarray) -> Mapping[str, int]:
-        found = dict(self.at_limit)
-        for column in AT_LIMIT:
-            if column in (step.dtype.names or ()) and (count := int(step[column].sum())):
-                found[column] = found.get(column, 0) + count
-        return found
 
-    def _worst(
-        self, step: np.ndarray, contact: np.ndarray, names: Sequence[str]
-    ) -> Mapping[str, Worst]:
-        found = dict(self.worst)
-        for part in PARTS:
-            if f"{part}_contact" not in (step.dtype.names or ()) or len(step) == 0:
-                continue
-            row = step[int(step[part].argmax())]  # the first NaN, where there is one
-            value, before = float(row[part]), found.get(part)
-            if before is None or value > before.value or np.isnan(value):
-                bodies = _pair(contact, int(row["step"]), int(row[f"{part}_contact"]), names)
-                found[part] = Worst(value, bodies)
-        return found
+@lru_cache(maxsize=64)
+def _columns(row: np.dtype[Any]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return which of PARTS rows of steps have, and which columns that count."""
+    names = row.names or ()
+    parts = tuple(part for part in PARTS if f"{part}_contact" in names)
+    return parts, tuple(name for name in (NOT_CONVERGED, *AT_LIMIT) if name in names)
 
 
 def _pair(contact: np.ndarray, step: int, index: int, names: Sequence[str]) -> str:

@@ -77,9 +77,11 @@ class Bounds:
         self._last = step[-1:].copy(), pose[-1:].copy()
         checked = list(self._checks.over(part))
         self.worst.not_reported = self._checks.not_reported
+        # Of few passes: each gives the interpreter's lock to the threads of the log, and waits.
+        most = [float(check.numbers[again:].max()) for check in checked]
         first: tuple[int, CheckedSteps] | None = None
-        for check in checked if self._stops else ():
-            if check.check not in STOPPING:
+        for check, largest in zip(checked, most, strict=True) if self._stops else ():
+            if check.check not in STOPPING or largest <= check.bound:
                 continue
             beyond = check.numbers[again:] > check.bound
             row = int(beyond.argmax())  # the first of them, if there is one
@@ -88,8 +90,8 @@ class Bounds:
         end = len(step) - diverged
         if first is not None:
             end = min(end, first[0] + 1)
-        for check in checked:
-            self.worst.take(check, part, again, end)
+        for check, largest in zip(checked, most, strict=True):
+            self.worst.take(check, part, again, end, largest if end == len(step) else None)
         if first is None:
             return block, ""
         row, check = first

@@ -9,7 +9,9 @@ from __future__ import annotations
 from typing import Final
 
 CALL: Final = 0.25  # [s] that a call is to take
-MOST: Final = 4096  # steps of a call: enough to amortise it
+# Steps of a call: enough to amortise it, and the passes over its rows, each of which gives the
+# interpreter's lock to the threads of the log and waits for it.
+MOST: Final = 8192
 GROWTH: Final = 8  # from call to call, at most
 POSES: Final = 2 * 1024 * 1024  # [byte] of poses that an engine holds
 

@@ -38,6 +38,7 @@ from mcap.records import (
 from numpy.typing import NDArray
 
 from lavendersim.durable_files import named
+from lavendersim.trace.checksums import crc32
 from lavendersim.trace.file_digest import FileDigest
 from lavendersim.trace.record_bytes import pieces_of, to_bytes
 from lavendersim.trace.whole import MAGIC, LogDigest
@@ -145,7 +146,7 @@ def closed(payload: bytes | memoryview, messages: Iterable[Messages]) -> Closed:
         data=_compressor().compress(payload),
         message_start_time=min(int(group.entries["time"][0]) for group in messages),
         message_end_time=max(int(group.entries["time"][-1]) for group in messages),
-        uncompressed_crc=zlib.crc32(payload),
+        uncompressed_crc=crc32(payload),
         uncompressed_size=len(payload),
     )
     return Closed(chunk, messages)
@@ -268,7 +269,7 @@ class Container:
         """Take what was written into the checksums."""
         unwritten, self._unwritten = self._unwritten, []
         for data in _joined(unwritten):
-            self._crc = zlib.crc32(data, self._crc)
+            self._crc = crc32(data, self._crc)
             self._sha256.update(data)
             self._summed.append(data)
 

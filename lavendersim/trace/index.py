@@ -8,7 +8,6 @@ messages of a chunk must fill it without a gap.
 from __future__ import annotations
 
 import struct
-import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import BytesIO
@@ -38,6 +37,7 @@ from mcap.records import (
 )
 
 from lavendersim.errors import TraceError
+from lavendersim.trace.checksums import crc32
 from lavendersim.trace.container import (
     CRC_KEY,
     FileIndex,
@@ -223,7 +223,7 @@ def open_chunk(chunk: Chunk, messages: Sequence[Messages]) -> ChunkContent:
         raise ValueError(f"chunk compression {chunk.compression!r} is not lavender's")
     check_chunk(chunk)
     payload = zstandard.ZstdDecompressor().decompress(chunk.data, chunk.uncompressed_size)
-    if zlib.crc32(payload) != chunk.uncompressed_crc or len(payload) != chunk.uncompressed_size:
+    if crc32(payload) != chunk.uncompressed_crc or len(payload) != chunk.uncompressed_size:
         raise ValueError("a chunk fails its CRC")
     first = 0
     for opcode, first, end in records_of(payload):

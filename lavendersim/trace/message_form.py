@@ -43,7 +43,7 @@ class MessageForm(NamedTuple):
 
             fill_messages()(
                 data,
-                starts.astype(np.uint64),
+                np.ascontiguousarray(starts, np.int64).view(np.uint64),
                 (self.template, self.text, self.slots, self.head_slots, self.odd_slots),
                 words,
                 heads,

@@ -103,6 +103,8 @@ class Light:
 
     def sizes(self, counted: Counted) -> Rows:
         """Return the bytes of each step [B] (n,)."""
+        if not len(counted.block.residual):
+            return np.full(len(counted.block.step), len(self._light), np.int64)
         swept = _counts(counted.residual_start)
         heads = (swept > 0) * len(self._sweeps)
         sizes: Rows = len(self._light) + heads + swept * len(self._sweep)

@@ -112,11 +112,19 @@ def test_a_command_ends_without_looking_for_circles() -> None:
     assert json.loads(done.stdout.splitlines()[-1]) == [False, True]
 
 
-@pytest.mark.parametrize(("chosen", "expected"), [(None, "0"), ("1", "1")])
-def test_numpy_asks_for_no_large_pages_unless_someone_else_says_so(
-    chosen: str | None, expected: str
+# Large pages; threads of its linear algebra, each of which waits for work in a loop.
+@pytest.mark.parametrize(
+    ("name", "chosen", "expected"),
+    [
+        ("NUMPY_MADVISE_HUGEPAGE", None, "0"),
+        ("NUMPY_MADVISE_HUGEPAGE", "1", "1"),
+        ("OPENBLAS_NUM_THREADS", None, "1"),
+        ("OPENBLAS_NUM_THREADS", "2", "2"),
+    ],
+)
+def test_numpy_asks_for_little_unless_someone_else_says_so(
+    name: str, chosen: str | None, expected: str
 ) -> None:
-    name = "NUMPY_MADVISE_HUGEPAGE"
     others = {key: value for key, value in os.environ.items() if key != name}
     done = subprocess.run(
         [sys.executable, "-c", f"import lavender_cli.main, os; print(os.environ[{name!r}])"],

@@ -67,6 +67,7 @@ ROOMS = {
 DECLARATIONS = {"lavendersim.engine.effects", "lavendersim.engine.solvers"}
 # A log that is written is laid out by kernels; who reads one loads none.
 OF_THE_WRITER = {
+    ("lavendersim/trace/checksums.py", "lavendersim.engine.crc_fold"),
     ("lavendersim/trace/message_form.py", "lavendersim.engine.message_kernel"),
     ("lavendersim/trace/contact_columns.py", "lavendersim.engine.difference_kernel"),
     ("lavendersim/trace/predictors.py", "lavendersim.engine.expected_kernel"),
