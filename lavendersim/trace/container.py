@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import struct
 import threading
-import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -36,9 +35,9 @@ from mcap.records import (
     SummaryOffset,
 )
 from numpy.typing import NDArray
+from zlib_ng.zlib_ng import crc32
 
 from lavendersim.durable_files import named
-from lavendersim.trace.checksums import crc32
 from lavendersim.trace.file_digest import FileDigest
 from lavendersim.trace.record_bytes import pieces_of, to_bytes
 from lavendersim.trace.whole import MAGIC, LogDigest
@@ -89,7 +88,7 @@ class FileIndex:
 def metadata_crc(name: str, values: Mapping[str, str]) -> str:
     """Return the checksum that a metadata record carries of its name and its other entries."""
     entries = {key: value for key, value in values.items() if key != CRC_KEY}
-    return f"{zlib.crc32(to_bytes(Metadata(name, entries))):08x}"
+    return f"{crc32(to_bytes(Metadata(name, entries))):08x}"
 
 
 @lru_cache(maxsize=256)  # the cells of a sweep say the same about their engine
@@ -240,7 +239,7 @@ class Container:
         offset_start = start + len(summary)
         summary += to_bytes(*(offset for offset in offsets if offset.group_length))
         footer = to_bytes(Footer(start, offset_start, 0))
-        crc = zlib.crc32(summary + footer[:-4])
+        crc = crc32(summary + footer[:-4])
         self._write(summary + to_bytes(Footer(start, offset_start, crc)) + MAGIC)
         self.abandon()
         return LogDigest(self._offset, records, self._sha256.hexdigest())

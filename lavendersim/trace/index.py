@@ -35,9 +35,9 @@ from mcap.records import (
     Statistics,
     SummaryOffset,
 )
+from zlib_ng.zlib_ng import crc32
 
 from lavendersim.errors import TraceError
-from lavendersim.trace.checksums import crc32
 from lavendersim.trace.container import (
     CRC_KEY,
     FileIndex,

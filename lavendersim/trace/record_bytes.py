@@ -7,7 +7,6 @@ records that every log has many of, all numbers are packed at once (`_AT_ONCE`).
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Callable, Mapping
 from struct import Struct
 from typing import Any, Final
@@ -25,6 +24,7 @@ from mcap.records import (
     Statistics,
     SummaryOffset,
 )
+from zlib_ng.zlib_ng import crc32
 
 _HEAD: Final = Struct("<BQ").pack  # opcode, length of what follows
 _ONE, _TWO, _FOUR, _EIGHT = (Struct(form).pack for form in ("<B", "<H", "<I", "<Q"))
@@ -101,7 +101,7 @@ def _chunk_index(one: ChunkIndex) -> list[bytes]:
 def _attachment(one: Attachment) -> list[bytes]:
     texts, size = _text(one.name) + _text(one.media_type), len(one.data)
     content = _TWO_SIZES(one.log_time, one.create_time) + texts + _EIGHT(size)
-    crc = zlib.crc32(one.data, zlib.crc32(content))
+    crc = crc32(one.data, crc32(content))
     return [_HEAD(Opcode.ATTACHMENT, len(content) + size + 4) + content, one.data, _FOUR(crc)]
 
 

@@ -14,9 +14,10 @@ from __future__ import annotations
 
 import hashlib
 import struct
-import zlib
 from pathlib import Path
 from typing import BinaryIO, Final, NamedTuple
+
+from zlib_ng.zlib_ng import crc32
 
 from lavendersim.errors import TraceError
 
@@ -69,7 +70,7 @@ def read_end(path: Path, stream: BinaryIO, expected: LogDigest | None = None) ->
         raise TraceError(f"{path}: not an MCAP file")
     opcode, length, start, _, crc = _FOOTER.unpack_from(tail)
     summary = _read(stream, start, size - len(MAGIC))
-    if (opcode, length) != (_FOOTER_OPCODE, _FOOTER_LENGTH) or zlib.crc32(summary[:-4]) != crc:
+    if (opcode, length) != (_FOOTER_OPCODE, _FOOTER_LENGTH) or crc32(summary[:-4]) != crc:
         raise TraceError(f"{path}: the summary is damaged (it fails its CRC)")
     data = start - _DATA_END.size
     record = _read(stream, data, start)
@@ -137,6 +138,6 @@ def _crc_of_start(stream: BinaryIO, length: int) -> int:
     stream.seek(0)
     crc = 0
     while length > 0 and (block := stream.read(min(BLOCK, length))):
-        crc = zlib.crc32(block, crc)
+        crc = crc32(block, crc)
         length -= len(block)
     return crc

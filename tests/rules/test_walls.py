@@ -67,7 +67,6 @@ ROOMS = {
 DECLARATIONS = {"lavendersim.engine.effects", "lavendersim.engine.solvers"}
 # A log that is written is laid out by kernels; who reads one loads none.
 OF_THE_WRITER = {
-    ("lavendersim/trace/checksums.py", "lavendersim.engine.crc_fold"),
     ("lavendersim/trace/message_form.py", "lavendersim.engine.message_kernel"),
     ("lavendersim/trace/contact_columns.py", "lavendersim.engine.difference_kernel"),
     ("lavendersim/trace/predictors.py", "lavendersim.engine.expected_kernel"),
@@ -90,6 +89,7 @@ LIBRARIES = {
     "mcap": {"trace"},
     "google": {"trace"},  # google.protobuf
     "zstandard": {"trace"},
+    "zlib_ng": {"trace"},
     "rerun": {"replay"},
     "matplotlib": {"figures"},
     "jinja2": {"figures"},
