@@ -56,7 +56,7 @@ def _print(found: Comparison) -> None:
     _section("config", [_change(one.path, one.a, one.b) for one in found.config])
     resolved = [
         _change(one.path, one.a, one.b) + (f"  in {n} cells" if n > 1 else "")
-        for one, n in found.resolved.items()
+        for one, n in found.resolved
     ]
     _section("resolved in equal cells", resolved)
     _section("versions", [_change(one.path, one.a, one.b) for one in found.versions])

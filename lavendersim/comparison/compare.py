@@ -53,7 +53,7 @@ class Comparison(NamedTuple):
     a: Run
     b: Run
     config: list[Difference]  # as written
-    resolved: dict[Difference, int]  # of cells, beside that; in how many pairs
+    resolved: list[tuple[Difference, int]]  # of cells, beside that; in how many pairs
     versions: list[Difference]
     machine: list[Difference]
     not_understood: list[str]  # a sentence on each config of another version
@@ -79,7 +79,7 @@ class Comparison(NamedTuple):
             "b": str(self.b.path),
             "equal": self.equal,
             "config": [one._asdict() for one in self.config],
-            "resolved": [{**one._asdict(), "cells": n} for one, n in self.resolved.items()],
+            "resolved": [{**one._asdict(), "cells": n} for one, n in self.resolved],
             "versions": [one._asdict() for one in self.versions],
             "machine": [one._asdict() for one in self.machine],
             "not_understood": self.not_understood,
@@ -122,7 +122,7 @@ def compare(a: Run, b: Run) -> Comparison:
         a,
         b,
         written,
-        {Difference(o.path, _shown(o.a), _shown(o.b)): n for o, n in resolved.values()},
+        list(resolved.values()),
         _named(environments, VERSIONS),
         _named(environments, MACHINE),
         list(dict.fromkeys(run.not_understood for run in (a, b) if run.not_understood)),
@@ -156,14 +156,10 @@ def _written(run: Run) -> dict[str, Any]:
     return {**run.config_data, **{name: one for name, one in options.items() if one}}
 
 
-def _shown(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
-
-
 def _environment(run: Run) -> dict[str, Any]:
     try:
         table = json.loads(read_sealed(run.path / ENVIRONMENT))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise TraceError(f"{run.path / ENVIRONMENT}: damaged: {error}") from None
     return dict(table) if isinstance(table, dict) else {}
 

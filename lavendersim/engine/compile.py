@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
+from time import perf_counter_ns
 from typing import Any
 
 import numba
@@ -46,6 +47,10 @@ def inner(function: Callable[..., Any]) -> Any:
     return Kernel(with_signature(function), targetoptions=options)
 
 
+# Whether this thread names kernels alone (`naming`), whether it compiles, and what that took.
+_of_thread = threading.local()
+
+
 @contextmanager
 def compiling() -> Iterator[None]:
     """Compile inside: without numba's remark that records share their first fields, and faster.
@@ -53,9 +58,26 @@ def compiling() -> Iterator[None]:
     A kernel compiled for one record serves records that begin with the same fields, at the same
     offsets; that is what we want, and numba calls it experimental each time.
     """
-    with uncollected(), warnings.catch_warnings():
-        warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
-        yield
+    outer, begin = getattr(_of_thread, "compiles", False), perf_counter_ns()
+    _of_thread.compiles = True
+    try:
+        with uncollected(), warnings.catch_warnings():
+            warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
+            yield
+    finally:
+        _of_thread.compiles = outer
+        if not outer:
+            _of_thread.compiled_ns = compiled_ns() + perf_counter_ns() - begin
+
+
+def compiled_ns() -> int:
+    """Return what composing, compiling and loading kernels has taken this thread so far [ns]."""
+    return int(getattr(_of_thread, "compiled_ns", 0))
+
+
+def clock_without_compiling() -> int:
+    """Return a clock of this thread [ns] that stands while it compiles kernels."""
+    return perf_counter_ns() - compiled_ns()
 
 
 def call(kernel: Any, *arguments: Any) -> Any:
@@ -88,10 +110,6 @@ def separate(kernel: Any, spec: Spec, how: int = SEPARATE) -> Any:
 
 # Lists that want to know what is composed: (module, name of the kernel).
 _listeners: list[list[tuple[str, str]]] = []
-
-
-# Whether kernels of this thread are named alone, see `naming`.
-_of_thread = threading.local()
 
 
 def _are_named() -> bool:

@@ -13,6 +13,7 @@ import numpy as np
 
 from lavendersim.cell import CellConfig
 from lavendersim.clock import Clock
+from lavendersim.engine.compile import clock_without_compiling, compiled_ns
 from lavendersim.engine.effects import EFFECTS
 from lavendersim.engine.engine import Engine, Rows
 from lavendersim.engine.records import DIVERGED, INACCURATE, NOT_FINITE, RUNNING, TURNS_TOO_FAST
@@ -338,7 +339,7 @@ def _simulation(
     ready: its engine, and what its kernel took [ns]. signalled: names a signal that came.
     """
     physics_ns = logging_ns = 0
-    (engine, compile_ns), steps = ready, job.config.steps
+    (engine, compile_ns), steps, compiled = ready, job.config.steps, compiled_ns()
     in_log = job.in_log or plan_in_log(job.plan)
     absent, metadata = in_log.absent, metadata_of(job, in_log)
     writer = TraceWriter(job.path, job.config, job.as_written, metadata, absent, job.copy)
@@ -366,7 +367,7 @@ def _simulation(
         if result == DIVERGED:
             status = divergence(scene, engine)
         yield None
-        start = perf_counter_ns()
+        start = clock_without_compiling()
         rows = engine.take_rows(room=True)
         if (taken := len(rows.step) - 1) > 0:
             block = block_of(rows, scene.clock)
@@ -376,23 +377,24 @@ def _simulation(
                 last = int(block.step["step"][-1])
                 if last < done or result != DIVERGED:
                     result, status, done = STOPPED, broken, last
-            logging_ns += perf_counter_ns() - start
+            logging_ns += clock_without_compiling() - start
             yield None
-            start = perf_counter_ns()
+            start = clock_without_compiling()
             writer.append(block)
             accuracy = accuracy.after(block.step, block.contact, scene.names)
         dump.take(engine, done, stop)
         physics_ns += spent
-        logging_ns += perf_counter_ns() - start
+        logging_ns += clock_without_compiling() - start
         if result in (DIVERGED, STOPPED) or (result == RUNNING and done >= steps):
             break
         if name := signalled():
             status = interrupted(scene.clock, name, done)
             break
     yield None
-    start = perf_counter_ns()
+    start = clock_without_compiling()
     written = writer.close(status)
-    logging_ns += perf_counter_ns() - start
+    logging_ns += clock_without_compiling() - start
+    compile_ns += compiled_ns() - compiled  # of kernels that lay out the log
     times = compile_ns, physics_ns, logging_ns
     outcome = CellOutcome(job.cell, status, done, *times, accuracy, written.digest)
     return Simulated(outcome, written, bounds.worst)

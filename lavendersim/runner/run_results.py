@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar, cast
 
 from lavendersim.durable_files import write_in_pieces
 from lavendersim.errors import TraceError
@@ -26,6 +26,9 @@ NOT_FINITE: Final = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
 # Columns of the violations: the largest of each kind in any step, and the bodies whose contact has
 # it. What an older version did not write, and what is not logged, is missing or None.
 WORST: Final = "worst_"
+Plain = TypeVar("Plain", int, str, bool)
+KINDS: Final = {int: "count", str: "text", bool: "yes or no"}
+LONGEST_SHOWN: Final = 40  # characters of what is refused
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,9 +176,9 @@ def _cell_of(row: Mapping[str, Any]) -> CellResult:
     columns.pop("worst_residual", None)
     tolerance, not_converged = row.get("tolerance"), row.get("not_converged_steps")
     return CellResult(
-        row["index"],
-        row["label"],
-        row["status"],
+        _of_kind(row, "index", int),
+        _of_kind(row, "label", str),
+        _of_kind(row, "status", str),
         int(row["steps"]),
         {name: as_numbers(value) for name, value in row["measures"].items()},
         float(row["physics_us_per_step"]),
@@ -191,16 +194,24 @@ def _cell_of(row: Mapping[str, Any]) -> CellResult:
 
 
 def _verdict_of(row: Mapping[str, Any]) -> Verdict:
+    known = {"path": "", "follows": False, "judged": True, **row}  # older versions wrote fewer
     return Verdict(
-        row["name"],
-        row["node"],
-        row["passed"],
+        _of_kind(row, "name", str),
+        _of_kind(row, "node", str),
+        _of_kind(row, "passed", bool),
         float(row["measured"]),
-        row["expected"],
-        row["tolerance"],
-        own_message=row["message"],
-        path=row.get("path", ""),
-        follows=row.get("follows", False),
-        margin=float(row.get("margin", "nan")),  # older versions wrote none
-        judged=row.get("judged", True),
+        _of_kind(row, "expected", str),
+        _of_kind(row, "tolerance", str),
+        own_message=_of_kind(row, "message", str),
+        path=_of_kind(known, "path", str),
+        follows=_of_kind(known, "follows", bool),
+        margin=float(row.get("margin", "nan")),
+        judged=_of_kind(known, "judged", bool),
     )
+
+
+def _of_kind(row: Mapping[str, Any], name: str, kind: type[Plain]) -> Plain:
+    """Return a value of a row; TypeError where it is of another kind: yes is not 1."""
+    if type(row[name]) is not kind:
+        raise TypeError(f"{name} is no {KINDS[kind]}: {str(row[name])[:LONGEST_SHOWN]!r}")
+    return cast(Plain, row[name])

@@ -68,7 +68,7 @@ def judged_by_pytest(
         runs.append(finish(self))
         return runs[-1]
 
-    options = ["-q", "-p", "no:cacheprovider", "-c", "/dev/null"]
+    options = ["-q", "-p", "no:cacheprovider", "-p", "no:unraisableexception", "-c", "/dev/null"]
     options += [f"--rootdir={config.parent}", f"--basetemp={folder}", str(config)]
     with (
         mock.patch.object(writer, "CHUNK_BYTES", CHUNK_BYTES),

@@ -94,6 +94,24 @@ def test_an_option_of_the_command_line_is_a_difference_of_resolved_configs(
     ]
 
 
+def test_what_one_run_alone_resolves_to_is_a_difference(one: Path, tmp_path: Path) -> None:
+    body = "{shape: {kind: sphere, radius: 0.1}, mass: 1.0}"
+    grid = "kind: grid, counts: [1, 1, 1], spacing: [1, 1, 1], origin: [9, 0, 9]"
+    more = f"  arrangements: {{more: {{{grid}, body: {body}}}}}\n"
+    found = compared(one, made(DRAWN.replace("numerics:", more + "numerics:", 1), tmp_path), 1)
+    [added] = [row for row in found["resolved"] if "bodies.more" in row["path"]]
+    assert (added["a"], added["b"]["mass"], added["cells"]) == ("(absent)", 1.0, 2)
+
+
+def test_an_environment_that_is_nested_without_end_is_damaged(one: Path, tmp_path: Path) -> None:
+    spoilt = copied(one, tmp_path)
+    without_digests(spoilt)
+    (spoilt / "env.json").write_text("[" * 100_000)
+    done = verb("diff", one, spoilt)
+    assert (done.code, done.stdout) == (3, "")
+    assert done.stderr.startswith(f"{spoilt / 'env.json'}: damaged: ")
+
+
 def test_a_damaged_log_is_not_compared(one: Path, tmp_path: Path) -> None:
     spoilt = copied(one, tmp_path)
     cut(logs(spoilt)[0], 0.7)

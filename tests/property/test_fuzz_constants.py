@@ -10,8 +10,17 @@ import ast
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
-from fuzz_constants import CONSTANTS, difference, has_cavity, in_units, motions, plan_called
+from fuzz_constants import (
+    CONSTANTS,
+    Motion,
+    difference,
+    has_cavity,
+    in_units,
+    motions,
+    plan_called,
+)
 
 import lavendersim.engine
 
@@ -64,6 +73,16 @@ def constants_with_units(path: Path) -> list[str]:
 def test_constants_with_a_unit_are_known() -> None:
     found = [name for path in sorted(ENGINE.rglob("*.py")) for name in constants_with_units(path)]
     assert {*found} - {*NO_UNITS} == {*CONSTANTS}
+
+
+def test_where_a_run_ends_is_compared_by_its_step_and_not_by_its_time() -> None:
+    said = "diverged: body a turns too far after step {} (t = {} s)"
+    one, same, later = (
+        Motion(*[np.zeros(0)] * 3, said.format(*end), False)
+        for end in ((11, "0.00341"), (11, "0.000852"), (12, "0.00341"))
+    )
+    assert difference(one, same) == ""
+    assert "after step 12" in difference(one, later)
 
 
 @pytest.mark.usefixtures("optimised")

@@ -28,7 +28,7 @@ NO_PAIRING = Pairing(("e",), [], [], [])
 
 
 def comparison(**changes: Any) -> Comparison:
-    empty: Any = Comparison(RUN, RUN, [], {}, [], [], [], NO_PAIRING, [], [], {}, [SAME])
+    empty: Any = Comparison(RUN, RUN, [], [], [], [], [], NO_PAIRING, [], [], {}, [SAME])
     return empty._replace(**changes)
 
 
@@ -44,7 +44,7 @@ def test_equal_but_for_the_machine_and_its_times() -> None:
     "change",
     [
         {"config": [Difference("duration", 1, 2)]},
-        {"resolved": {Difference("duration", 1, 2): 3}},
+        {"resolved": [(Difference("duration", 1, 2), 3)]},
         {"versions": [Difference("numpy", "1", "2")]},
         {"measures": [MeasureChange("e=1", "m", 1.0, 2.0)]},
         {"verdicts": [VerdictChange("n", "pass", "FAIL")]},

@@ -122,6 +122,11 @@ def test_what_versions_before_residuals_did_not_record_is_unknown_and_not_zero(
         (TABLE | {"cells": [ROW | {"steps": "few"}]}, "invalid literal for int()"),
         (TABLE | {"cells": [{k: ROW[k] for k in ROW if k != "steps"}]}, "it has no 'steps'"),
         (TABLE | {"checks": 3}, "'int' object is not iterable"),
+        (TABLE | {"cells": [ROW | {"status": 3}]}, "status is no text: '3'"),
+        (TABLE | {"cells": [ROW | {"index": True}]}, "index is no count: 'True'"),
+        (TABLE | {"checks": [VERDICT.row | {"follows": "no"}]}, "follows is no yes or no: 'no'"),
+        (TABLE | {"checks": [VERDICT.row | {"passed": 1}]}, "passed is no yes or no: '1'"),
+        (TABLE | {"checks": [VERDICT.row | {"node": ["n"]}]}, "node is no text: "),
     ],
 )
 def test_what_are_no_results_is_refused(tmp_path: Path, table: dict[str, Any], why: str) -> None:
