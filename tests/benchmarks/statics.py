@@ -169,7 +169,7 @@ def measure(before: Path | None, starts: int, steps: int, rows: tuple[Row, ...] 
         now = stack.enter_context(worker(ROOT))
         then = stack.enter_context(worker(before)) if before else None
         known = {now: 0, then: 0}
-        pairs = []
+        pairs: list[tuple[str, list[tuple[Any, int]], tuple[list[float], list[float]]]] = []
         for row in rows:
             if row.without:
                 sides = (now, text_of(row, row.without, steps)), (now, text_of(row, "", steps))
