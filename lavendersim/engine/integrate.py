@@ -15,7 +15,7 @@ from .body_turn import make_free_turn, make_turn, make_turn_in_halves
 from .compile import kernel
 from .effects import has_hook, made_once
 from .joined_impacts import make_share_impacts
-from .records import GIVES, HELD, JUMPS, NOT_FINITE, SPHERE, TURNS_TOO_FAST
+from .records import NOT_FINITE, SPHERE, TURNS_TOO_FAST
 from .rotation import inertia_times, is_round, turn, turn_exactly
 from .row_terms import make_acts, row_terms
 from .spec import Spec
@@ -281,12 +281,9 @@ def make_displace(spec: Spec) -> Any:
                     return free_turn(body, v, dt)
                 # Impulses changed its spin at the middle; what jumps turns with that after them.
                 mean = Vec3(m.mean_x, m.mean_y, m.mean_z)
-                end = Vec3(v.wx, v.wy, v.wz)
+                spin = mean if lasting else Vec3(v.wx, v.wy, v.wz)
                 v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
-                kind = JUMPS
-                if lasting:
-                    kind = HELD if m.held == 1 else GIVES
-                turn_by_mean(body, v, mean, end, kind, dt)
+                turn_by_mean(body, v, mean, spin, dt)
                 return True
         if springs:
             if sprung and body.sprung == PLACED:

@@ -97,24 +97,6 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
 
     note_unfound = kernel(note_unfound, spec)
 
-    def note_holders(contacts, count, bodies, motion):
-        # By the solve at the start: another law in each pass would lead to no middle.
-        for i in range(motion.shape[0]):
-            motion[i].held = 0
-            if beside:
-                if bodies[i].sprung > 0:
-                    motion[i].held = 1
-        for c in range(count):
-            contact = contacts[c]
-            if acts(contact):
-                holds = contact.inv_m_a == 0.0 or contact.inv_m_b == 0.0
-                if bilateral:
-                    holds = holds or contact.bilateral == 1
-                if holds:
-                    motion[contact.a].held, motion[contact.b].held = 1, 1
-
-    note_held: Any = kernel(note_holders, spec) if uneven else None
-
     def restore(velocities, free, lead, motion):
         for i in range(velocities.shape[0]):
             v, before = velocities[i], free[i]
@@ -184,8 +166,6 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
                 spin, m = lead[i], motion[i]
                 spin.wx, spin.wy, spin.wz = m.wx, m.wy, m.wz
         keep_start(contacts, count)
-        if uneven:
-            note_held(contacts, count, bodies, motion)
         sweeps = counters.sweeps
         order = workspace.ordering.order
         system = ContactSystem(contacts, order, count, bodies, velocities)
@@ -211,7 +191,6 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             for c in range(count):
                 contact = contacts[c]
                 impulse = impulse_of(contact)
-                contact.lasts = 1
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                 shift(contact, pairs[contact.pair], lead, motion, params)
                 if contact.jumps == 1:
@@ -269,7 +248,6 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             for c in range(count):
                 contact = contacts[c]
                 stay(contact, bodies, poses)
-                contact.lasts = 1 if contact.phi <= params.slop else 0
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                 lasting(contact, pairs[contact.pair], velocities, motion, params)
             if loaded:

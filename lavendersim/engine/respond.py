@@ -128,9 +128,6 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             if predicted:
                 for i in range(motion.shape[0]):
                     motion[i].tau = params.dt
-        moves = False  # at rest each body's friction acts at its own surface
-        if centred:
-            moves = is_moving(bodies, motion)
         begin, together = 0, NEAR
         if reverses:
             if predicted:
@@ -139,8 +136,6 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             end = min(begin + together, count)
             for c in range(begin, end):
                 contact, pair = contacts[c], pairs[contacts[c].pair]
-                if centred:
-                    contact.lasts = 1 if moves and contact.phi <= params.slop else 0
                 append_contact(contact, bodies, velocities, motion, pair, params)
             if watched:
                 for c in range(begin, end):
@@ -182,7 +177,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             if meets:
                 predict_impacts(contacts, count, motion, params)
         if centred:
-            moving = lasts and moves
+            moving = lasts and is_moving(bodies, motion)
             if moving:
                 for i in range(velocities.shape[0]):
                     workspace.middle.free[i] = velocities[i]
