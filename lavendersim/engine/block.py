@@ -3,7 +3,9 @@
     v = (v_B + omega_B x r_B) - (v_A + omega_A x r_A)        relative velocity, world axes
     p = n lambda_n + t1 lambda_1 + t2 lambda_2               impulse on B, world axes; A gets -p
 Levers end on each body's own surface, so that a speculative contact has the levers it
-will have when the surfaces meet.
+will have when the surfaces meet. With contacts at the middle of the step those of two bodies that
+touch and that nothing restrains end in one point: friction at two points, phi apart along n, would be a couple
+phi lambda_t that nobody bears, and angular momentum would not be kept.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from .compile import inner, kernel
 from .effects import made_once
 from .row_terms import row_terms
 from .spec import Spec
+from .step_terms import step_terms
 from .tangents import first_tangent, second_tangent
 from .vectors import Vec3, cross, dot, plus_scaled
 
@@ -221,9 +224,13 @@ def make_complete_block(spec: Spec):
     swept, shifted = row_terms(spec).swept, row_terms(spec).shifted
     stretched, stretch_tangents = made_once(spec, "stretch_tangents")
     response, beside = make_block_response(spec), place_beside(spec)
+    centred = step_terms(spec).centred
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi
+        if centred:
+            if contact.lasts == 1 and body_a.inv_m > 0.0 and body_b.inv_m > 0.0:
+                half = 0.0
         x, y, z = contact.nx * half, contact.ny * half, contact.nz * half
         contact.rax = contact.x - x - body_a.x
         contact.ray = contact.y - y - body_a.y
