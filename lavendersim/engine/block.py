@@ -4,8 +4,8 @@
     p = n lambda_n + t1 lambda_1 + t2 lambda_2               impulse on B, world axes; A gets -p
 Levers end on each body's own surface, so that a speculative contact has the levers it
 will have when the surfaces meet. With contacts at the middle of the step those of two bodies that
-touch and that nothing restrains end in one point: friction at two points, phi apart along n, would be a couple
-phi lambda_t that nobody bears, and angular momentum would not be kept.
+touch and that nothing restrains end in one point: friction at two points, phi apart along n, would
+be a couple phi lambda_t that nobody bears, and angular momentum would not be kept.
 """
 
 from __future__ import annotations
