@@ -3,8 +3,10 @@
     v = (v_B + omega_B x r_B) - (v_A + omega_A x r_A)        relative velocity, world axes
     p = n lambda_n + t1 lambda_1 + t2 lambda_2               impulse on B, world axes; A gets -p
 Levers end on each body's own surface, so that a speculative contact has the levers it
-will have when the surfaces meet. Surfaces that give way overlap by what they are indented: where
-both bodies move, both levers end in the middle of that, or friction would add angular momentum.
+will have when the surfaces meet. Friction at two points, phi apart along n, is a couple phi lambda_t
+that nobody bears. Where both bodies move both levers therefore end in the middle: of surfaces that
+give way and overlap by what they are indented, and, with contacts at the middle of the step, of two
+that touch and that nothing restrains. So friction keeps angular momentum.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from .compile import inner, kernel
 from .effects import made_once
 from .row_terms import make_is_soft, row_terms
 from .spec import Spec
+from .step_terms import step_terms
 from .tangents import first_tangent, second_tangent
 from .vectors import Vec3, cross, dot, plus_scaled
 
@@ -225,11 +228,15 @@ def make_complete_block(spec: Spec):
     response, beside = make_block_response(spec), place_beside(spec)
     springs: bool = row_terms(spec).elastic
     is_soft: Any = make_is_soft(spec) if springs else None
+    centred = step_terms(spec).centred
 
     def complete_block(contact, body_a, body_b, va, vb, pair):
         half = 0.5 * contact.phi
         if springs:
             if is_soft(pair) and body_a.inv_m > 0.0 and body_b.inv_m > 0.0:
+                half = 0.0
+        if centred:
+            if contact.lasts == 1 and body_a.inv_m > 0.0 and body_b.inv_m > 0.0:
                 half = 0.0
         x, y, z = contact.nx * half, contact.ny * half, contact.nz * half
         contact.rax = contact.x - x - body_a.x

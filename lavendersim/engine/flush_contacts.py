@@ -9,7 +9,8 @@ not meet. The directions looked at are the normals of what the body rests on:
 
 A step higher than that is met. Tiles that a fast body is still far from as the part begins are
 looked at likewise, whatever their gap does first: it is about to pass on to them, and at the middle
-of the step the edge of what it lies on (`midpoint_geometry.make_look`) is not what carries it.
+of the step the edge of what it lies on (`midpoint_geometry.make_look`) is not what carries it. Of
+what is on that edge itself, higher than flush, the middle is the face beyond.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from typing import Any
 from .approach import CREEP, FAR, make_rate, make_slowest
 from .collide.nearest_image import place_beside
 from .collide.pairs import SHAPE_PAIRS
-from .collide.shape_kernels import make_radius, make_support
+from .collide.shape_kernels import make_best_face, make_radius, make_support
 from .collide.shapes import has_cavity, has_mesh
 from .compile import kernel
 from .contact_lists import make_list_contacts
@@ -42,7 +43,7 @@ def make_drop_flush(spec: Spec) -> Any:
     """
     if not any(SHAPE_PAIRS[name].convex for name in spec.shape_pairs):
         return None
-    support, radius = make_support(spec), make_radius(spec)
+    support, radius, best_face = make_support(spec), make_radius(spec), make_best_face(spec)
     rate, slowest = make_rate(spec), make_slowest(spec)
     keep_present, list_contacts = make_keep_present(spec), make_list_contacts(spec)
     sleeps, connects = has_hook(spec, "update_sleeping"), spec.connects
@@ -78,6 +79,18 @@ def make_drop_flush(spec: Spec) -> Any:
 
     passes = kernel(passes, spec)
 
+    def is_on_edge(state, contact, i, hulls, slop):
+        # Whether body i is on an edge of the other body: above its face by more than flush.
+        row = state.pairs[contact.pair]
+        sign, base, on_it = 1.0, row.a, row.b
+        if contact.a == i:
+            sign, base, on_it = -1.0, row.b, row.a
+        n = Vec3(sign * contact.nx, sign * contact.ny, sign * contact.nz)
+        face, outward = best_face(state.bodies[base], n, hulls)
+        return face >= 0 and state.bodies[on_it].bound * (1.0 - dot(n, outward)) > FLUSH * slop
+
+    is_on_edge = kernel(is_on_edge, spec)
+
     def is_movable(body):
         movable = body.inv_m > 0.0
         if sleeps:
@@ -102,7 +115,9 @@ def make_drop_flush(spec: Spec) -> Any:
                     if state.pairs[other.pair].kind < ROPE:  # it is no face
                         continue
                 if passes(state, contact, other, workspace, params, least):
-                    flush, contacts[c].passed_on = True, 1
+                    flush, below = True, contacts[c]
+                    if not is_on_edge(state, below, i, workspace.collision.hulls, params.slop):
+                        below.passed_on = 1
         return flush
 
     rests_beside = kernel(rests_beside, spec)

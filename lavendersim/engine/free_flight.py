@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .approach import CREEP
 from .compile import inner, kernel
 from .row_terms import row_terms
 from .spec import Spec
@@ -22,10 +23,12 @@ def target_of_flight(v_n):
 
 
 def make_widen(spec: Spec) -> Any:
-    """Return `kernel(contact, params)`, of a row at the start with a gap: by what turning opens it.
+    """Return `kernel(contact, params)`, of a row at the start: by what turning opens of its gap.
 
     The gap at the end is phi + dt (n . J(q_0) v + b), v: v_1, or of what flies the mean. Surfaces
-    that curve away from each other may come nearer by their rate at the start and yet not meet.
+    that curve away from each other may come nearer by their rate at the start and yet not meet. Nor
+    do surfaces that touch and part, if the mean of free flight leaves a gap, however fast they near
+    each other as it ends.
     """
 
     bilateral = row_terms(spec).bilateral
@@ -35,6 +38,10 @@ def make_widen(spec: Spec) -> Any:
             if contact.bilateral == 1:
                 return
         opens = contact.middle_n - contact.begin_n
+        if contact.phi <= params.slop and contact.begin_n > CREEP:
+            mean = contact.v_n_pre - 0.5 * contact.dv_n
+            if contact.phi + mean * params.dt > params.slop:
+                contact.target = max(contact.target, target_of_flight(contact.v_n_pre))
         if contact.phi > params.slop and opens > 0.0:
             mean = contact.v_n_pre - 0.5 * contact.dv_n
             if contact.phi + (mean + opens) * params.dt > -params.slop:

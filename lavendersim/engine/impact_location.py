@@ -145,9 +145,14 @@ def make_locate(spec: Spec) -> Any:
                     least = k
             seen = least
             if own:
+                lost = True
                 for k in range(found):
                     if points[k].feature == ahead.feature:
-                        seen = k
+                        seen, lost = k, False
+                if lost:  # renamed, as points of a rim are: what lasts is not what is ahead
+                    met = deepest_new(state.contacts, count, ahead.pair, points, found)
+                    if met >= 0:
+                        seen = met
                 if abs(points[seen].phi) <= MET:
                     # Has another of the pair met already? What it stands on has not: it lasts.
                     met = deepest_new(state.contacts, count, ahead.pair, points, found)

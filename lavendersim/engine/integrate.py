@@ -15,7 +15,7 @@ from .body_turn import make_free_turn, make_turn, make_turn_in_halves
 from .compile import kernel
 from .effects import has_hook, made_once
 from .joined_impacts import make_share_impacts
-from .records import NOT_FINITE, SPHERE, TURNS_TOO_FAST
+from .records import GIVES, JUMPS, NOT_FINITE, RESTRAINED, SPHERE, TURNS_TOO_FAST
 from .rotation import inertia_times, is_round, turn, turn_exactly
 from .row_terms import make_acts, row_terms
 from .spec import Spec
@@ -281,9 +281,12 @@ def make_displace(spec: Spec) -> Any:
                     return free_turn(body, v, dt)
                 # Impulses changed its spin at the middle; what jumps turns with that after them.
                 mean = Vec3(m.mean_x, m.mean_y, m.mean_z)
-                spin = mean if lasting else Vec3(v.wx, v.wy, v.wz)
+                end = Vec3(v.wx, v.wy, v.wz)
                 v.wx, v.wy, v.wz = m.wx, m.wy, m.wz
-                turn_by_mean(body, v, mean, spin, dt)
+                kind = JUMPS
+                if lasting:
+                    kind = RESTRAINED if m.restrained == 1 else GIVES
+                turn_by_mean(body, v, mean, end, kind, dt)
                 return True
         if springs:
             if sprung and body.sprung == PLACED:

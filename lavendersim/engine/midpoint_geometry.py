@@ -31,6 +31,8 @@ APART = 0.1
 NEAR = 0.02
 # Least cosine of a contact's normal at the middle and at the start, if its feature is another.
 AGREES = 0.5
+# Cosine of a normal that has turned with what rolls off an edge onto the face beside it, at most.
+ROLLED = 1.0 - 1e-8
 # The points of a cap that lies are named from where it tilts to. One that is farther than this
 # share of the radius from its place has the name of another: the cap has tilted to another side.
 TILTED = 0.5
@@ -95,6 +97,13 @@ def is_beyond(contact, point, reach):
     return length(minus(position(point), position(contact))) > reach
 
 
+@inner
+def has_rolled(contact, manifold):
+    """Whether the normal has turned since the start, as of what rolls off an edge onto a face."""
+    n = manifold_normal(manifold)
+    return contact.at_nx * n[0] + contact.at_ny * n[1] + contact.at_nz * n[2] < ROLLED
+
+
 def make_nearest(spec: Spec) -> Any:
     """Return `kernel(contact, manifold, found) -> index` of the point nearest to a contact's place.
 
@@ -150,8 +159,9 @@ def make_look(spec: Spec) -> Any:
 
     Flat faces that turn pass from face on face to edge on face: of a pair of them that has none of
     its features any more each contact is at the nearest new one, of another pair of them where a
-    new one is as near as its own would be. Any other point that the manifold no longer has stays on
-    its two bodies: see `stay`.
+    new one is as near as its own would be. So does what is round and rolls off an edge onto a face,
+    if the normal has turned: that of the start would hold back what flies on. Any other point that
+    the manifold no longer has stays on its two bodies: see `stay`.
     """
     manifold = make_manifold(spec, spec.shape_pairs)
     compound, place_parts = made_once(spec, "place_parts")
@@ -190,7 +200,8 @@ def make_look(spec: Spec) -> Any:
                 scratch.manifold.reduction[WHOLE] = row.whole
             if not passes_on:  # beyond a seam is another's face, not its edge
                 found = manifold(row.kind, a, b, margin + APART * size, scratch)
-            persists, flat = False, has_flat_faces(a) and has_flat_faces(b)
+            persists, one, two = False, has_flat_faces(a), has_flat_faces(b)
+            flat, rolled = found > 0 and one and two, False
             reach = UNBOUNDED
             if caps:
                 if last - first >= LYING:
@@ -198,6 +209,9 @@ def make_look(spec: Spec) -> Any:
             for c in range(first, last):
                 for k in range(found):
                     persists = persists or points[k].feature == contacts[c].feature
+            if found > 0 and one != two and not persists:
+                for c in range(first, last):
+                    rolled = rolled or has_rolled(contacts[c], scratch.manifold)
             for c in range(first, last):
                 contact = contacts[c]
                 stay(contact, bodies, poses)
@@ -208,7 +222,7 @@ def make_look(spec: Spec) -> Any:
                 if caps:
                     if best >= 0 and is_beyond(contact, points[best], reach):
                         best = -1
-                if best < 0 and flat and found > 0:
+                if best < 0 and (flat or rolled):
                     if persists:
                         rows = first, last
                         best = renamed(contacts, rows, c, scratch.manifold, found, NEAR * size)

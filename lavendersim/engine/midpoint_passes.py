@@ -28,6 +28,7 @@ from .midpoint_jumps import make_carry_along
 from .midpoint_mixing import NO_PASS, make_mix_velocities
 from .midpoint_rows import (
     SAME,
+    is_free,
     make_begin_slip,
     make_lasting,
     make_resist,
@@ -191,6 +192,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             for c in range(count):
                 contact = contacts[c]
                 impulse = impulse_of(contact)
+                contact.lasts = is_free(contact, motion)
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                 shift(contact, pairs[contact.pair], lead, motion, params)
                 if contact.jumps == 1:
@@ -248,6 +250,7 @@ def make_midpoint_passes(spec: Spec, append_contact: Any, preload: Any, solve: A
             for c in range(count):
                 contact = contacts[c]
                 stay(contact, bodies, poses)
+                contact.lasts = is_free(contact, motion) if contact.phi <= params.slop else 0
                 append_contact(contact, bodies, velocities, motion, pairs[contact.pair], params)
                 lasting(contact, pairs[contact.pair], velocities, motion, params)
             if loaded:

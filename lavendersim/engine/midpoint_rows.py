@@ -12,11 +12,11 @@ from typing import Any
 
 from .block import make_relative_velocity, make_slip_velocity
 from .collide.shapes import make_is_inside
-from .compile import kernel
+from .compile import inner, kernel
 from .contact import make_normal_velocity
-from .effects import made_once
+from .effects import has_hook, made_once
 from .joint_turn import make_joint_velocity
-from .records import PLANE
+from .records import PLANE, ROPE
 from .row_terms import row_terms
 from .spec import Spec
 from .step_terms import step_terms
@@ -61,6 +61,38 @@ def make_is_moving(spec: Spec) -> Any:
         return False
 
     return kernel(is_moving, spec)
+
+
+def make_note_restrained(spec: Spec) -> Any:
+    """Return `kernel(contacts, count, pairs, bodies, motion, slop)`: what is restrained, noted.
+
+    By a joint, a spring, or a touch of what does not move: known before any row is, and the same
+    in all passes, or these would lead to no middle.
+    """
+    springs, bilateral = has_hook(spec, "act_beside"), row_terms(spec).bilateral
+
+    def note_restrained(contacts, count, pairs, bodies, motion, slop):
+        for i in range(motion.shape[0]):
+            motion[i].restrained = 0
+            if springs:
+                if bodies[i].sprung > 0:
+                    motion[i].restrained = 1
+        for c in range(count):
+            contact = contacts[c]
+            a, b = contact.a, contact.b
+            holds = contact.phi <= slop and (bodies[a].inv_m == 0.0 or bodies[b].inv_m == 0.0)
+            if bilateral:
+                holds = holds or pairs[contact.pair].kind < ROPE
+            if holds:
+                motion[a].restrained, motion[b].restrained = 1, 1
+
+    return kernel(note_restrained, spec)
+
+
+@inner
+def is_free(contact, motion):
+    """Return 1 where neither body is restrained, else 0."""
+    return 1 if motion[contact.a].restrained == 0 and motion[contact.b].restrained == 0 else 0
 
 
 def make_lasting(spec: Spec) -> Any:

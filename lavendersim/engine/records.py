@@ -101,6 +101,12 @@ ANGULAR_VELOCITY: Final[list[Field]] = [("wx", F8), ("wy", F8), ("wz", F8)]  # [
 # Rows ascend in `key`, which names the two bodies whatever row they have.
 PAIR: Final[list[Field]] = [("a", I8), ("b", I8), ("kind", I8), ("key", I8)]
 
+# How a body turns by the middle of a step: pushed by what moves, restrained by what may not turn so
+# (`gyroscopic.make_turn_midway`), or with a jump.
+GIVES: Final = 0
+RESTRAINED: Final = 1
+JUMPS: Final = 2
+
 # What a body did within a step, beside its velocity at the end.
 MOTION: Final[list[Field]] = [
     ("vx", F8),  # velocity at the start of the step [m/s]
@@ -121,6 +127,7 @@ MOTION: Final[list[Field]] = [
     ("carried", I8),  # by a contact. 0: free; else AFTERWARDS, ALWAYS, LASTING: see `integrate`
     ("midway", I8),  # whether impulses at the middle of the step changed its velocity: `integrate`
     ("unparted", I8),  # 1: its joints stayed together at the last middle
+    ("restrained", I8),  # 1: by a joint, a spring or what does not move; where midway is 1
     ("mean_x", F8),  # mean spin of the step, where midway is 1 [rad/s]
     ("mean_y", F8),
     ("mean_z", F8),

@@ -20,7 +20,13 @@ from .effects import has_hook, made_by, made_once
 from .integrate import keeps_motion, make_classify
 from .joint_turn import make_joint_velocity
 from .midpoint_passes import make_midpoint_passes, make_stand_up
-from .midpoint_rows import make_is_moving, make_lasting, make_note_unparted
+from .midpoint_rows import (
+    is_free,
+    make_is_moving,
+    make_lasting,
+    make_note_restrained,
+    make_note_unparted,
+)
 from .overlooked_points import make_look_over
 from .records import INSTANT
 from .row_terms import make_acts, row_terms
@@ -90,6 +96,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
     ordered, centred = step_terms(spec).ordered_impacts, step_terms(spec).centred
     rebounds = ordered and may_rebound(spec)
     lasting: Any = make_lasting(spec) if centred else None
+    note_restrained: Any = make_note_restrained(spec) if centred else None
     is_moving: Any = make_is_moving(spec) if centred else None
     bilateral = row_terms(spec).bilateral
     joint_velocity: Any = make_joint_velocity(spec) if bilateral else None
@@ -128,6 +135,11 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             if predicted:
                 for i in range(motion.shape[0]):
                     motion[i].tau = params.dt
+        moves = False  # at rest each body's friction acts at its own surface
+        if centred:
+            moves = is_moving(bodies, motion)
+            if moves:
+                note_restrained(contacts, count, pairs, bodies, motion, params.slop)
         begin, together = 0, NEAR
         if reverses:
             if predicted:
@@ -136,6 +148,10 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             end = min(begin + together, count)
             for c in range(begin, end):
                 contact, pair = contacts[c], pairs[contacts[c].pair]
+                if centred:
+                    contact.lasts = 0
+                    if moves and contact.phi <= params.slop:
+                        contact.lasts = is_free(contact, motion)
                 append_contact(contact, bodies, velocities, motion, pair, params)
             if watched:
                 for c in range(begin, end):
@@ -177,7 +193,7 @@ def make_respond(spec: Spec, log_contacts: Any) -> Any:
             if meets:
                 predict_impacts(contacts, count, motion, params)
         if centred:
-            moving = lasts and is_moving(bodies, motion)
+            moving = lasts and moves
             if moving:
                 for i in range(velocities.shape[0]):
                     workspace.middle.free[i] = velocities[i]

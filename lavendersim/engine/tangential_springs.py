@@ -282,6 +282,25 @@ def make_keep_stretch(spec: Spec) -> Any:
     return kernel(keep_stretch, spec)
 
 
+def make_damper_work(spec: Spec) -> Any:
+    """Return `kernel(contact) -> W` that the damper along the surface does in the step [J].
+
+    W = -k_d (s_1 - s_0)^2/dt of a row that gives way, solved: 0 without a damper, never above 0.
+    """
+    mean = step_terms(spec).centred
+
+    def damper_work(contact):
+        h, k, dt = contact.yield_damping, contact.yield_k, contact.yield_dt
+        followed, damping = 1.0 / (1.0 + h), h * k  # k_d/dt
+        if mean:
+            followed, damping = 2.0 * followed, 0.5 * damping
+        one = followed * (contact.lambda_1 / (k * dt) + contact.yield_1)
+        two = followed * (contact.lambda_2 / (k * dt) + contact.yield_2)
+        return -damping * (one * one + two * two)
+
+    return kernel(damper_work, spec)
+
+
 @inner
 def stretch_energy(contact):
     """Return what the spring along the surface stores [J]."""

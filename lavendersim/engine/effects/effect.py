@@ -150,7 +150,7 @@ class Hooks:
     turn: Maker | None = None  # (body, velocity, dt) -> whether the turn has a solution
     turn_uneven: Maker | None = None  # the same for unequal principal inertias
     turn_midway: Maker | None = None  # (body, start, m, lead, end, dt) -> whether a middle is found
-    turn_by_mean: Maker | None = None  # (body, velocity, mean, spin, dt): by the step's middle
+    turn_by_mean: Maker | None = None  # (body, velocity, mean, end, kind, dt)
     add_spin: Maker | None = None  # (body, velocity, x, y, z, twice_spent): jump of spin
     meet_triggers: Maker | None = None  # (state, log, counters) -> how many, at the end of a step
     update_sleeping: Maker | None = None  # at the end of a step, see `sleeping`

@@ -9,6 +9,7 @@ found by Newton's method.
 
 from math import sqrt
 
+from ..records import GIVES, JUMPS
 from ..terms import StepTerms
 from .decision import Decision, Facts, named
 from .effect import Column, Effect, Hooks, kernel
@@ -99,26 +100,78 @@ def make(spec):
     return kernel(integrate_gyroscopic, spec)
 
 
+def make_find_pushed_middle(spec):
+    """Return `kernel(body, p, g, dt) -> (mx, my, mz, found)`: m with impulses, body axes.
+
+    p: momentum at the start, g: half of what impulses give, both in the body's axes at the start.
+        m = p + g + dt/2 (m + g) x I^-1 m
+    """
+
+    def find_pushed_middle(body, p, g, dt):
+        ix, iy, iz = body.inv_ix, body.inv_iy, body.inv_iz
+        h = 0.5 * dt
+        px, py, pz = p.x + g.x, p.y + g.y, p.z + g.z
+        mx, my, mz = px, py, pz
+        size = px * px + py * py + pz * pz
+        found = False
+        for _ in range(PASSES):
+            x, y, z = mx + g.x, my + g.y, mz + g.z
+            fx = px - mx + h * (y * iz * mz - z * iy * my)
+            fy = py - my + h * (z * ix * mx - x * iz * mz)
+            fz = pz - mz + h * (x * iy * my - y * ix * mx)
+            # The Jacobian (1, a, b; c, 1, d; e, f, 1) of m less the right side, by its adjugate.
+            a, b = h * (z * iy - iz * mz), h * (iy * my - y * iz)
+            c, d = h * (iz * mz - z * ix), h * (x * iz - ix * mx)
+            e, f = h * (y * ix - iy * my), h * (ix * mx - x * iy)
+            p_x, p_y, p_z = 1.0 - d * f, d * e - c, c * f - e
+            scale = 1.0 / (p_x + a * p_y + b * p_z)
+            dx = scale * (p_x * fx + (b * f - a) * fy + (a * d - b) * fz)
+            dy = scale * (p_y * fx + (1.0 - b * e) * fy + (b * c - d) * fz)
+            dz = scale * (p_z * fx + (a * e - f) * fy + (1.0 - a * c) * fz)
+            mx, my, mz = mx + dx, my + dy, mz + dz
+            if dx * dx + dy * dy + dz * dz <= FOUND * size:
+                found = True
+                break
+        return mx, my, mz, found
+
+    return kernel(find_pushed_middle, spec)
+
+
 def make_turn_midway(spec):
     """Return `kernel(body, start, m, lead, end, dt) -> found`: half a turn, with impulses' change.
 
     body: stands at a middle found before, with its spin there in `start.w` + what impulses change;
     start: its row at the start of the step. end: spin that the step ends with at that middle; lead:
-    spin there before impulses, replaced. With L = I (w - lead) the momentum that they give,
-        m = P + L/2 + dt/2 m x I^-1 m,   the step's mean spin I^-1 m = lead + I^-1 L/2.
+    spin there before impulses, replaced. With L = I (w - lead) the momentum that they give, in the
+    axes of the start, the turn R by I^-1 m dt is to leave the world R P' = P + L:
+        m = (P + P')/2  =>  m = P + L/2 + dt/2 (m + L/2) x I^-1 m
+    L works by L . I^-1 m, so the energy is kept, too. Of what a joint, a spring or what does not
+    move holds (`m.restrained`) L is a torque in the axes of the middle,
+        m = P + L/2 + dt/2 m x I^-1 m,
+    which loses the world L (1 - cos) across the axis, half a turn's, and works the same. Nobody
+    asks what the world gets of a floor; and beside stiff springs the passes of the other law may
+    lead to no middle, or to one far away. The step's mean spin is I^-1 m = lead + I^-1 L/2 with I
+    of the middle.
     """
     from ..rotation import half_turn, inertia_times, inverse_inertia_times, to_body, to_world
+    from ..vectors import Vec3
 
-    find_middle = make_find_middle(spec)
+    find_middle, find_pushed_middle = make_find_middle(spec), make_find_pushed_middle(spec)
 
     def turn_midway(body, start, m, lead, end, dt):
         x, y, z = end.wx - lead.wx, end.wy - lead.wy, end.wz - lead.wz
         lx, ly, lz = inertia_times(body, x, y, z)
-        gx, gy, gz = to_body(body, lx, ly, lz)
         bx, by, bz = to_body(start, m.wx, m.wy, m.wz)
         ix, iy, iz = start.inv_ix, start.inv_iy, start.inv_iz
-        px, py, pz = bx / ix + 0.5 * gx, by / iy + 0.5 * gy, bz / iz + 0.5 * gz
-        px, py, pz, found = find_middle(start, px, py, pz, dt)
+        px, py, pz = bx / ix, by / iy, bz / iz
+        if m.restrained == 1 or (x == 0.0 and y == 0.0 and z == 0.0):
+            gx, gy, gz = to_body(body, lx, ly, lz)
+            px, py, pz = px + 0.5 * gx, py + 0.5 * gy, pz + 0.5 * gz
+            px, py, pz, found = find_middle(start, px, py, pz, dt)
+        else:
+            gx, gy, gz = to_body(start, lx, ly, lz)
+            half = Vec3(0.5 * gx, 0.5 * gy, 0.5 * gz)
+            px, py, pz, found = find_pushed_middle(start, Vec3(px, py, pz), half, dt)
         wx, wy, wz = to_world(start, ix * px, iy * py, iz * pz)
         body.qw, body.qx, body.qy, body.qz = start.qw, start.qx, start.qy, start.qz
         half_turn(body, wx, wy, wz, dt)
@@ -130,19 +183,33 @@ def make_turn_midway(spec):
 
 
 def make_turn_by_mean(spec):
-    """Return `kernel(body, velocity, mean, spin, dt)`: turn with a spin of the step's middle.
+    """Return `kernel(body, velocity, mean, end, kind, dt)`: turn with a spin of the middle.
 
-    velocity: spin at its start, replaced by that at its end: in body axes 2 omega_m - omega_0, of
-    the mean. spin: what it turns with, which is the mean where no contact makes it jump.
+    velocity: spin at its start, replaced by that at its end. mean, end: spins at the middle, of the
+    step and of its end there. It turns with the mean, or with the end what a contact makes jump
+    (JUMPS). Its spin is then, in body axes, 2 omega_m - omega_0, of the mean: energy is kept to the
+    last digit, momentum to what the solve leaves. GIVES: what it is pushed by moves, too, and gets
+    what it takes: the world's momentum grows by L = 2 I (end - mean) to the last digit, and energy
+    is kept to what the solve leaves.
     """
-    from ..rotation import to_body, to_world, turn
+    from ..rotation import half_turn, inertia_times, inverse_inertia_times, to_body, to_world, turn
 
-    def turn_by_mean(body, velocity, mean, spin, dt):
-        ax, ay, az = to_body(body, velocity.wx, velocity.wy, velocity.wz)
-        bx, by, bz = to_body(body, mean.x, mean.y, mean.z)
-        turn(body, spin.x * dt, spin.y * dt, spin.z * dt)
-        velocity.wx, velocity.wy, velocity.wz = to_world(
-            body, 2.0 * bx - ax, 2.0 * by - ay, 2.0 * bz - az
+    def turn_by_mean(body, velocity, mean, end, kind, dt):
+        if kind != GIVES:
+            spin = end if kind == JUMPS else mean
+            ax, ay, az = to_body(body, velocity.wx, velocity.wy, velocity.wz)
+            bx, by, bz = to_body(body, mean.x, mean.y, mean.z)
+            turn(body, spin.x * dt, spin.y * dt, spin.z * dt)
+            velocity.wx, velocity.wy, velocity.wz = to_world(
+                body, 2.0 * bx - ax, 2.0 * by - ay, 2.0 * bz - az
+            )
+            return
+        px, py, pz = inertia_times(body, velocity.wx, velocity.wy, velocity.wz)
+        half_turn(body, mean.x, mean.y, mean.z, dt)
+        lx, ly, lz = inertia_times(body, end.x - mean.x, end.y - mean.y, end.z - mean.z)
+        half_turn(body, mean.x, mean.y, mean.z, dt)
+        velocity.wx, velocity.wy, velocity.wz = inverse_inertia_times(
+            body, px + 2.0 * lx, py + 2.0 * ly, pz + 2.0 * lz
         )
 
     return kernel(turn_by_mean, spec)

@@ -73,6 +73,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     from ..parts import make_forget_history
     from ..row_terms import row_terms
     from ..stronge import make_leave
+    from ..tangential_springs import make_damper_work
     from . import has_hook
 
     slip_velocity = make_slip_velocity(spec)
@@ -81,6 +82,7 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
     forget_history = make_forget_history(spec)
     bilateral, reverses = row_terms(spec).bilateral, has_hook(spec, "reverse_slip")
     yielding = row_terms(spec).yielding
+    damper_work: Any = make_damper_work(spec) if yielding else None
 
     def work_of(contacts, count, velocities, motion, params):
         # Of all impulses, at each body's time of impact: before and after it forces work alone.
@@ -109,8 +111,8 @@ def make_settle(spec: Spec, solve: Any, classify: Any) -> Any:
                 across = contact.lambda_1 * (0.5 * (contact.pre_1 + v_1) - after_1)
                 across += contact.lambda_2 * (0.5 * (contact.pre_2 + v_2) - after_2)
                 if yielding:
-                    if contact.yield_k > 0.0:  # a spring, which gives what it stored
-                        across = 0.0
+                    if contact.yield_k > 0.0:  # a spring gives what it stored, its damper takes
+                        across = damper_work(contact)
                 total += along + across
                 size += abs(along) + abs(across)
         return total, size

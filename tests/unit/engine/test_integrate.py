@@ -14,6 +14,7 @@ import pytest
 from drawn_contacts import put_vector, random_frame
 from interpreted import interpreted, records
 from plain_facts import one_row
+from scipy.spatial.transform import Rotation
 
 from lavendersim.engine import integrate
 from lavendersim.engine.integrate import AFTERWARDS, AHEAD, ALWAYS, IMPACT, LASTING, UNFOUND
@@ -156,17 +157,24 @@ def test_what_lasts_moves_and_turns_by_the_mean_of_both_ends(rng) -> None:
 def test_an_uneven_body_turns_as_its_contacts_at_the_middle_reckon(carried: int, rng) -> None:
     """By the mean of both ends' spins, or of what jumps by the last, as it moves.
 
-    The spin at the end is the mean's other side, in axes of the body: 2 w_m - w_0.
+    The spin at the end of what jumps is the mean's other side, in axes of the body: 2 w_m - w_0.
+    Of what lasts the world's momentum has grown by 2 I (w - w_m), of the middle of its turn.
     """
     v, after, w, spin, mean = rng.normal(size=(5, 3))
     body = Body(CENTRED, rng, (0.5, 1.0, 1.3)).gives(m_v=v, v=after, m_w=w, w=spin, m_mean_=mean)
     body.motion["carried"], body.motion["midway"] = carried, 1
-    lasts = carried == LASTING
+    lasts, momentum = carried == LASTING, body.inertia() @ w
     moved = DT * (0.5 * (v + after) if lasts else after)
     np.testing.assert_allclose(body.moved(CENTRED), moved, atol=1e-15)
     np.testing.assert_allclose(body.angle(), DT * (mean if lasts else spin), atol=1e-14)
-    expected = body.turn() @ body.frame.T @ (2.0 * mean - w)
-    np.testing.assert_allclose(body.spin(), expected, atol=1e-13)
+    if lasts:
+        turned = Rotation.from_matrix(body.turn() @ body.frame.T) ** 0.5
+        half = turned.as_matrix() @ body.frame
+        momentum = momentum + 2.0 * half @ np.diag(body.moments) @ half.T @ (spin - mean)
+        np.testing.assert_allclose(body.inertia() @ body.spin(), momentum, atol=1e-13)
+    else:
+        expected = body.turn() @ body.frame.T @ (2.0 * mean - w)
+        np.testing.assert_allclose(body.spin(), expected, atol=1e-13)
 
 
 @pytest.mark.parametrize("carried", [0, LASTING])

@@ -13,6 +13,7 @@ from lavendersim.engine.record_layout import cache_dtype, contact_dtype, velocit
 from lavendersim.engine.records import MOTION, dtype
 from lavendersim.engine.spec import Spec
 from lavendersim.engine.tangential_springs import (
+    make_damper_work,
     make_keep_stretch,
     make_recall,
     make_yield_row,
@@ -80,6 +81,28 @@ def test_a_damper_divides_both_terms_of_the_row(spec: Spec, whole: float) -> Non
     by = 1.0 + whole * 2.0 * 0.25 * math.sqrt(K / 4.0) / (K * DT)
     for name in ("gamma_t", "surface_2"):
         assert row[name] == pytest.approx(plain[name] / by, rel=1e-14)
+
+
+@pytest.mark.parametrize(("spec", "rest"), [(EULER, 1.0), (MEAN, 0.0)], ids=["euler", "mean"])
+def test_a_damper_takes_what_impulse_and_spring_leave_of_the_work(spec: Spec, rest: float) -> None:
+    """p . (s_1 - s_0)/dt = U_0 - U_1 + W, of Euler's rule less 1/2 k (s_1 - s_0)^2; it sticks."""
+    damped = one_row(tangential_stiffness=KAPPA, tangential_damping_ratio=0.25, friction=MU)
+    made = yielded(spec, contacts(spec, stretch_x=2e-4, stretch_y=-1e-4, stretch_k=K), damped)
+    made["mu"], made["lambda_n"], made["spring_v"] = 1e9, 1.0, 0.0
+    made["lambda_1"], made["lambda_2"] = -0.03, 0.05
+    velocities, motion = still(spec)
+    v = records(velocities)
+    interpreted(make_keep_stretch(spec))(records(made), 1, v, records(motion), PARAMS)
+    row = made[0]
+    before, after = np.array([2e-4, -1e-4]), np.array([row["stretch_x"], row["stretch_y"]])
+    work = np.array([-0.03, 0.05]) @ (after - before) / DT
+    lost = 0.5 * K * (after @ after - before @ before)
+    lost += rest * 0.5 * K * (after - before) @ (after - before)
+    found = interpreted(make_damper_work(spec))(records(made)[0])
+    assert found < 0.0
+    assert found == pytest.approx(work + lost, rel=1e-12)
+    made["yield_damping"] = 0.0
+    assert interpreted(make_damper_work(spec))(records(made)[0]) == 0.0
 
 
 @pytest.mark.parametrize(

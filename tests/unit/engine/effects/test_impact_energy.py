@@ -122,6 +122,25 @@ def test_what_gains_leaves_as_fast_as_gains_nothing(rng) -> None:
     assert meeting.gained == pytest.approx(0.0, abs=1e-11)
 
 
+@pytest.mark.parametrize(("share", "solves"), [(2.0, False), (0.5, True)])
+def test_a_damper_along_the_surface_takes_of_what_an_impact_gives(
+    rng, share: float, solves: bool
+) -> None:
+    """1.2 of its speed is (1.2^2 - 1)/(2 K_n) more; a damper that takes twice that leaves it so.
+
+    One that takes half has the impact settled. Of Euler's rule, with no impulse along the surface:
+    s_1 - s_0 = -s_0/(1 + h), W = -h k_t (s_0/(1 + h))^2.
+    """
+    yields = ("compliance", "contact_spring", "contact_torque", "tangential_compliance")
+    meeting = Meeting(rng, 1.2, SPEC.including(*yields, "warm_start"))
+    contact, h, k = meeting.contact, 0.5, 1e4
+    gained = 0.5 * (1.2**2 - 1.0) / contact.k_n
+    contact.yield_k, contact.yield_dt, contact.yield_damping = k, DT, h
+    contact.yield_1, contact.yield_2 = (1.0 + h) * np.sqrt(share * gained / (h * k)), 0.0
+    counters = meeting.settle(0.0)
+    assert (counters.stronge == 1, meeting.solves > 0) == (solves, solves)
+
+
 def test_a_plastic_impact_has_nothing_to_give(rng) -> None:
     meeting = Meeting(rng, 0.0)
     counters = meeting.settle(5.0)
