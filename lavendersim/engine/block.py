@@ -3,8 +3,8 @@
     v = (v_B + omega_B x r_B) - (v_A + omega_A x r_A)        relative velocity, world axes
     p = n lambda_n + t1 lambda_1 + t2 lambda_2               impulse on B, world axes; A gets -p
 Levers end on each body's own surface, so that a speculative contact has the levers it
-will have when the surfaces meet. Friction at two points, phi apart along n, is a couple phi lambda_t
-that nobody bears. Where both bodies move both levers therefore end in the middle: of surfaces that
+will have when the surfaces meet. Friction at two points, phi apart along n, is a couple
+phi lambda_t that nobody bears. Where both bodies move both levers therefore end in the middle: of surfaces that
 give way and overlap by what they are indented, and, with contacts at the middle of the step, of two
 that touch and that nothing restrains. So friction keeps angular momentum.
 """
