@@ -4,9 +4,9 @@
     p = n lambda_n + t1 lambda_1 + t2 lambda_2               impulse on B, world axes; A gets -p
 Levers end on each body's own surface, so that a speculative contact has the levers it
 will have when the surfaces meet. Friction at two points, phi apart along n, is a couple
-phi lambda_t that nobody bears. Where both bodies move both levers therefore end in the middle: of surfaces that
-give way and overlap by what they are indented, and, with contacts at the middle of the step, of two
-that touch and that nothing restrains. So friction keeps angular momentum.
+phi lambda_t that nobody bears. Where both bodies move both levers therefore end in the middle: of
+surfaces that give way and overlap by what they are indented, and, with contacts at the middle of
+the step, of two that touch and that nothing restrains. So friction keeps angular momentum.
 """
 
 from __future__ import annotations
