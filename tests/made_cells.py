@@ -77,9 +77,10 @@ def made_cell(
     """Return a cell of bodies, each the data of `body_data` or what is given to it.
 
     sections: `events`, `duration`, `record`, `effects`, `study` in place of those of a plain cell,
-    and `forces`, `connections`, `springs` of its scene.
+    and `forces`, `connections`, `springs`, `periodic` of its scene.
     """
-    own = {name: sections.pop(name) for name in ("connections", "springs") if name in sections}
+    names = ("connections", "springs", "periodic")
+    own = {name: sections.pop(name) for name in names if name in sections}
     cell = {
         "scene": {
             "gravity": list(gravity),

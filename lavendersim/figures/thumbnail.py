@@ -15,7 +15,7 @@ import numpy as np
 
 from lavendersim.cell import Bowl, Cavity, CellMesh, CellShape, Convex, Ellipsoid, Plane
 from lavendersim.figures.style import DARK, GREY, LOOKS
-from lavendersim.geometry.periodic_cell import in_cell
+from lavendersim.geometry.periodic_cell import faces_of_cell, in_cell
 from lavendersim.geometry.rotations import rotation_matrices, rotation_matrix
 from lavendersim.geometry.shapes import half_space, pieces
 from lavendersim.measures.changes import removals
@@ -45,16 +45,18 @@ def thumbnail(trace: Any, dpi: int = DPI) -> bytes:
     FigureCanvasAgg(figure)  # without pyplot, nothing else gives the figure one
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
-    low, high = seen.min(axis=0), seen.max(axis=0)
+    cell = cell_of(trace, *view)
+    low, high = _bounds(seen, cell)
     size = max(float((high - low)[0]), float((high - low)[1]) * WIDTH / HEIGHT, 1e-9)
     middle, half = (low + high) / 2, size * (0.5 + MARGIN)
     axes.set_xlim(middle[0] - half, middle[0] + half)
     axes.set_ylim(middle[1] - half * HEIGHT / WIDTH, middle[1] + half * HEIGHT / WIDTH)
-    for start, along in grounds_of(trace, *view):
+    lines = [(line, "-") for line in grounds_of(trace, *view)] + [(line, ":") for line in cell]
+    for (start, along), style in lines:
         ends = (
             start + np.outer((-3 * half, 3 * half), along) + np.dot(middle - start, along) * along
         )
-        axes.plot(ends[:, 0], ends[:, 1], color=GREY, linewidth=1.0)
+        axes.plot(ends[:, 0], ends[:, 1], style, color=GREY, linewidth=1.0)
     drawn = PolyCollection(outlines, facecolors=colours, edgecolors=DARK, linewidths=0.3)
     axes.add_collection(drawn)
     file = io.BytesIO()
@@ -138,11 +140,32 @@ def grounds_of(
         shape = trace.config.scene.bodies[name].shape
         if not isinstance(shape, Plane):
             continue
-        normal, offset = half_space(shape)
-        flat = np.array([normal @ right, normal @ up])
-        if math.hypot(*flat) > 0.99:
-            found.append((flat * offset, np.array([-flat[1], flat[0]])))
+        found += _edge_on(*half_space(shape), right, up)
     return found
+
+
+def cell_of(trace: Any, right: np.ndarray, up: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return a point and a direction of every face of a periodic cell that is seen edge on."""
+    faces = faces_of_cell(trace.config.scene.periodic)
+    return [line for normal, offset in faces for line in _edge_on(normal, offset, right, up)]
+
+
+def _edge_on(
+    normal: np.ndarray, offset: float, right: np.ndarray, up: np.ndarray
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the line as which a plane is seen, if it is seen edge on."""
+    flat = np.array([normal @ right, normal @ up])
+    return [(flat * offset, np.array([-flat[1], flat[0]]))] if math.hypot(*flat) > 0.99 else []
+
+
+def _bounds(
+    seen: np.ndarray, lines: list[tuple[np.ndarray, np.ndarray]]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the bounds of what is seen and of lines, each where it is nearest to its middle."""
+    middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
+    near = [start + np.dot(middle - start, along) * along for start, along in lines]
+    points = np.concatenate([seen, np.reshape(near, (-1, 2))])
+    return points.min(axis=0), points.max(axis=0)
 
 
 def parts_of(shape: CellShape) -> list[np.ndarray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,39 @@ def _ends(periodic: Any) -> Iterator[tuple[int, float, float]]:
         ends = getattr(periodic, name, None)
         if ends is not None:
             yield axis, ends[0], ends[1]
+
+
+def bounds_with_cell(low: Floats, high: Floats, periodic: Any) -> tuple[Floats, Floats]:
+    """Return the bounds (3,) of a box [m] that has the cell in it, too, where that has ends."""
+    low, high = low.copy(), high.copy()
+    for axis, lower, upper in _ends(periodic):
+        low[axis], high[axis] = min(low[axis], lower), max(high[axis], upper)
+    return low, high
+
+
+def edges_of_cell(low: Floats, high: Floats, periodic: Any) -> Floats:
+    """Return both ends of the edges of the cell (12, 2, 3) [m]; (0, 2, 3) without one.
+
+    low, high: bounds (3,) of what is drawn, to which it goes where it is not periodic.
+    """
+    low, high = low.copy(), high.copy()
+    for axis, lower, upper in _ends(periodic):
+        low[axis], high[axis] = lower, upper
+    edges = []
+    for axis in range(3) if periodic is not None else ():
+        others = [k for k in range(3) if k != axis]
+        for ends in product(*((low[k], high[k]) for k in others)):
+            edge = np.array([low, high])
+            edge[:, others] = ends
+            edges.append(edge)
+    return np.reshape(edges, (-1, 2, 3))
+
+
+def faces_of_cell(periodic: Any) -> Iterator[tuple[Floats, float]]:
+    """Yield the normal (3,) and the offset [m] of each face that is one of the cell's ends."""
+    for axis, *ends in _ends(periodic):
+        for end in ends:
+            yield np.eye(3)[axis], end
 
 
 def wrapped(places: Floats, periodic: Any) -> Floats:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import rerun as rr
 
-from lavendersim.geometry.periodic_cell import wrapped
+from lavendersim.geometry.periodic_cell import bounds_with_cell, edges_of_cell, wrapped
 from lavendersim.geometry.rotations import rotated, shortest_turn
 from lavendersim.replay.camera import Camera
 from lavendersim.replay.layer import ALONE, Layer
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["WORLD", "DrawnBody", "Extent", "Vector", "draw", "entity", "extent", "shapes"]
 
 BODIES, GRIDS = "bodies", "grid"  # where bodies are drawn, and the grids of planes
+CELL = "cell"  # and the edges of a periodic cell
 WORLD = "tf#/"  # rerun's name of the root frame, which no body can have
 
 # Okabe and Ito's palette, which stays distinct for all common kinds of colour blindness. Yellow
@@ -92,7 +93,7 @@ def extent(trace: Trace, bodies: Iterable[DrawnBody]) -> Extent:
             highs.append(positions.max(axis=0) + body.bounding_radius)
     if not lows:
         return Extent(np.full(3, -0.5), np.full(3, 0.5))
-    return Extent(np.min(lows, axis=0), np.max(highs, axis=0))
+    return Extent(*bounds_with_cell(np.min(lows, axis=0), np.max(highs, axis=0), cell))
 
 
 def draw(
@@ -109,6 +110,8 @@ def draw(
     layer, ghost = stage.layer, stage.ghost
     gone = removed(trace)
     begin = int(trace.step["time_ns"][0]) if len(trace.step) else 0
+    if not ghost:
+        _draw_cell(stream, trace, stage)
     movable = sum(not body.fixed for body in bodies)
     colours = iter(MOVABLE_COLOURS * (movable // len(MOVABLE_COLOURS) + 1))
     for body in bodies:
@@ -154,6 +157,15 @@ def _draw_path(
         line = rr.LineStrips3D([path], colors=[(*colour, 120)], radii=rr.Radius.ui_points(1.0))
         place = layer.path("paths", body.name)
         stream.log(place, rr.CoordinateFrame(WORLD), line, static=True)
+
+
+def _draw_cell(stream: rr.RecordingStream, trace: Trace, stage: Stage) -> None:
+    """Lines along the edges of a periodic cell, which goes as far as the room where it is open."""
+    edges = edges_of_cell(stage.room.low, stage.room.high, trace.config.scene.periodic)
+    if len(edges):
+        radius = rr.Radius.ui_points(1.0)
+        lines = rr.LineStrips3D(list(edges), colors=[GRID_COLOUR], radii=radius)
+        stream.log(stage.layer.path(CELL), rr.CoordinateFrame(WORLD), lines, static=True)
 
 
 def _draw_plane(stream: rr.RecordingStream, plane: DrawnBody, stage: Stage, stays: bool) -> None:

@@ -24,7 +24,10 @@ DOCUMENTS = ROOT / "docs"
 SYMBOLS = ("v", "gamma")  # a sentence that begins with one keeps its case
 # Where an effect's equations stand in theory.md, for those that have some.
 SECTIONS = {
-    "accelerate": ("gravity", "external_force", "drag", "spring", "kinematic"),
+    "accelerate": (
+        *("gravity", "external_force", "varying_force", "drag", "spring", "kinematic"),
+        "prescribed_motion",
+    ),
     "collide": ("compound", "broad_phase", "periodic_boundary", "speculative", "fast_bodies"),
     "rows": (
         *("contact_torque", "friction", "frictionless_contact", "rope", "joint"),

@@ -14,8 +14,10 @@ from lavendersim.figures.thumbnail import (
     AROUND,
     BEFORE,
     FIXED,
+    _bounds,
     _hull,
     _outlines,
+    cell_of,
     colour_of,
     corners_of,
     grounds_of,
@@ -111,6 +113,22 @@ def test_a_plane_is_a_line_where_it_is_seen_edge_on() -> None:
     assert (
         grounds_of(log({"wall": facing, "it": BALL}, [[0, 0, 0], [0, 0, 1]]), *view_of(one)) == []
     )
+
+
+def test_faces_of_a_periodic_cell_are_lines_in_the_picture_where_they_are_seen_edge_on() -> None:
+    """Along y, into the picture, there is none."""
+    periodic = {"x": [-1.0, 3.0], "y": [-2.0, 2.0], "z": None}
+    one = log({"it": BALL}, [[0, 0, 1]], [[0.5, 0, 1]], periodic=periodic)
+    view = view_of(one)
+    lines = cell_of(one, *view)
+    assert [start.tolist() for start, _ in lines] == [[-1.0, 0.0], [3.0, 0.0]]
+    assert [abs(along).tolist() for _, along in lines] == [[0.0, 1.0]] * 2
+    low, high = _bounds(_outlines(one, *view)[2], lines)
+    assert [low[0], high[0]] == [-1.0, 3.0]
+    assert [low[1], high[1]] == pytest.approx([0.9, 1.1])
+    without = log({"it": BALL}, [[0, 0, 1]], [[0.5, 0, 1]])
+    assert cell_of(without, *view) == []
+    assert thumbnail(one) != thumbnail(without)
 
 
 def test_a_cavity_is_a_line_around_what_is_inside() -> None:

@@ -6,7 +6,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from recordings import column, read
 
+from lavendersim import replay
 from lavendersim.replay import scene
 from tests.oracle.cells import cell
 
@@ -40,8 +42,28 @@ def test_what_goes_round_a_periodic_cell_is_shown_within_it(one_ball):
     )
     assert np.ptp(one_ball.pose[:, 1, 2]) > 0.125
     room = scene.extent(shown, scene.shapes(one_ball.config))
+    assert room.low[2] <= 0.25
+    assert room.high[2] >= 0.375
     assert room.low[2] >= 0.25 - 0.1
     assert room.high[2] < 0.375 + 0.1
+
+
+def test_a_periodic_cell_is_drawn_by_its_edges(one_ball, tmp_path):
+    """From end to end along y, along x and z as far as the room."""
+    one_ball.resolved["scene"]["periodic"] = {"x": None, "y": [-0.5, 1.5], "z": None}
+    replay.save(one_ball, tmp_path / "trace.rrd")
+    (strips,) = column(read(tmp_path / "trace.rrd")[1]["/cell"], "LineStrips3D:strips")
+    room = scene.extent(one_ball, scene.shapes(one_ball.config))
+    assert [room.low[1], room.high[1]] == [-0.5, 1.5]
+    assert np.shape(strips) == (12, 2, 3)
+    ends = np.reshape(strips, (24, 3))
+    # rerun has places in single precision
+    np.testing.assert_allclose([ends.min(axis=0), ends.max(axis=0)], room[:2], rtol=1e-6)
+
+
+def test_a_scene_that_is_not_periodic_has_no_cell(one_ball, tmp_path):
+    replay.save(one_ball, tmp_path / "trace.rrd")
+    assert "/cell" not in read(tmp_path / "trace.rrd")[1]
 
 
 def test_scene_of_planes_alone_has_an_extent(one_ball):
