@@ -71,7 +71,7 @@ def blueprint(
 
 def contents_of(layer: Layer, contacts: bool) -> list[str]:
     """The entities of a log that a view of its scene has."""
-    folders = ("bodies", "connections", "paths", "grid", *(["contacts"] if contacts else []))
+    folders = ("bodies", "connections", "paths", "grid", "cell", *["contacts"] * contacts)
     return [f"{layer.path(folder)}/**" for folder in folders]
 
 

@@ -23,6 +23,7 @@ def test_contacts_are_in_view_where_there_can_be_any() -> None:
         "/connections/**",
         "/paths/**",
         "/grid/**",
+        "/cell/**",
     ]
     assert contents_of(Layer("a"), False)[0] == "/a/bodies/**"
 

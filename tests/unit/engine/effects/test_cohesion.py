@@ -264,3 +264,32 @@ def test_balls_that_part_are_drawn_as_much_where_they_turn(spin: float) -> None:
     # They fly by the mean of old and new velocity, which counts the pull once; places of 0.2 m.
     way = [0.5 * gained * DT, 2.0 * RADIUS + (speed - 0.5 * lost) * DT]
     np.testing.assert_allclose(bench.engine.bodies["x"][:2], way, atol=1e-16)
+
+
+@pytest.mark.parametrize("stiffness", [1e5, 1e7])
+def test_a_ball_comes_off_at_the_force_of_its_adhesion_whatever_its_stiffness(
+    stiffness: float,
+) -> None:
+    """Johnson, Kendall and Roberts: F = 3/2 pi w R; hung, d = ((F - m g)/k)^(2/3) by Hertz."""
+    work = 50.0  # of adhesion [J/m^2]
+    force = 1.5 * np.pi * work * RADIUS
+    for share, holds in ((0.8, True), (0.999, True), (1.001, False)):
+        mass, left = share * force / G, max((1.0 - share) * force, 0.0)
+        depth = (left / stiffness) ** (2.0 / 3.0)
+        bodies = {
+            "ceiling": plane((0.0, 0.0, -1.0), -1.0, cohesion=force),
+            "ball": sphere(
+                RADIUS,
+                (0.0, 0.0, 1.0 - RADIUS + depth),
+                mass=mass,
+                cohesion=force,
+                hertz_stiffness=stiffness,
+            ),
+        }
+        bench = balls(bodies, (0.0, 0.0, -G), **DEFAULT.model_dump(mode="json"))
+        bench.run(60)
+        found = bench.engine.bodies["z"][1] - 1.0 + RADIUS
+        if holds:  # solves leave 1e-9 m/s a step
+            assert found == pytest.approx(depth, abs=60 * DT * 1e-9)
+        else:
+            assert found < -0.2
