@@ -14,7 +14,8 @@ import numpy as np
 from lavendersim.cell import Plane
 from lavendersim.figures.style import LOOKS
 from lavendersim.figures.thumbnail import colour_of, grounds_of, parts_of, view_of
-from lavendersim.geometry.periodic_cell import in_cell
+from lavendersim.geometry.periodic_cell import edges_of_cell, in_cell
+from lavendersim.geometry.shapes import bounding_radius
 from lavendersim.measures.changes import removals
 
 FRAMES: Final = 120  # states at most
@@ -26,9 +27,9 @@ def motion(trace: Any) -> str:
     """Return the sampled motion of a log as JSON; "" where fewer than two states are whole.
 
     `t`: times [s]; `right`, `up`: directions of the first view; `grounds`: [point, direction] of
-    planes seen edge on; `bodies`, of a mesh its triangles: colour `c` ("none" of a cavity), corners
-    `v` in the body's frame [m], whether `fixed`, and poses `p` [x, y, z, qw, qx, qy, qz], one a
-    time, null where it is not there.
+    planes seen edge on; `cell`: both ends of the edges of a periodic cell; `bodies`, of a mesh its
+    triangles: colour `c` ("none" of a cavity), corners `v` in the body's frame [m], whether
+    `fixed`, and poses `p` [x, y, z, qw, qx, qy, qz], one a time, null where it is not there.
     """
     rows, poses = trace.recorded_pose
     poses = in_cell(poses, trace.config.scene.periodic)
@@ -66,8 +67,13 @@ def motion(trace: Any) -> str:
         for point, along in grounds_of(trace, right, up)
         for level in [along[0] * right + along[1] * up]
     ]
+    radii = np.array([[bounding_radius(bodies[i].shape)] for i in solid])
+    places = poses[shown][:, solid, :3]
+    low, high = (places - radii).min(axis=(0, 1)), (places + radii).max(axis=(0, 1))
+    edges = edges_of_cell(low, high, trace.config.scene.periodic)
+    cell = [[_rounded(end, digits) for end in edge] for edge in edges]
     times = trace.step["time"][rows[shown]]
-    data = {"t": _rounded(times, 6), "right": right.tolist(), "up": up.tolist()}
+    data = {"t": _rounded(times, 6), "right": right.tolist(), "up": up.tolist(), "cell": cell}
     # A text within an element of its own: nothing in it may end that.
     text = json.dumps({**data, "grounds": planes, "bodies": drawn}, separators=(",", ":"))
     return text.replace("<", "\\u003c")

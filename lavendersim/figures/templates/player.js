@@ -31,7 +31,7 @@ function axesOf(data, turn, tilt) {
   const right = mix(data.right, away, turn), flat = mix(away, data.right, -turn);
   return { right, up: mix(data.up, flat, tilt), away: mix(flat, data.up, -tilt) };
 }
-// What of the motion must be seen: all that can move, in every frame, and a cavity around it.
+// What of the motion must be seen: all that can move, in every frame, and a cavity or cell around it.
 function roomOf(data) {
   let low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   for (const body of data.bodies) {
@@ -41,6 +41,10 @@ function roomOf(data) {
       low = low.map((x, k) => Math.min(x, pose[k] - size));
       high = high.map((x, k) => Math.max(x, pose[k] + size));
     }
+  }
+  for (const end of data.cell.flat()) {
+    low = low.map((x, k) => Math.min(x, end[k]));
+    high = high.map((x, k) => Math.max(x, end[k]));
   }
   return { centre: low.map((x, k) => (x + high[k]) / 2), half: Math.hypot(...low.map((x, k) => high[k] - x)) / 2 };
 }
@@ -81,6 +85,12 @@ function player(box) {
       path(ends.map((p) => [dot(p, axes.right), dot(p, axes.up)]));
       context.stroke();
     }
+    context.setLineDash([2, 3]);
+    for (const edge of data.cell) {
+      path(edge.map((p) => [dot(p, axes.right), dot(p, axes.up)]));
+      context.stroke();
+    }
+    context.setLineDash([]);
     context.strokeStyle = "#222";
     for (const one of outlines(data, frame, axes)) {
       path(one.points);

@@ -6,6 +6,7 @@ import json
 import shutil
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -90,3 +91,38 @@ def test_the_player_draws_what_the_thumbnail_does(trace: Any, tmp_path: Path) ->
     for view in (axes, turned):
         frame = np.array([view["right"], view["up"], view["away"]])
         assert frame @ frame.T == pytest.approx(np.eye(3), abs=1e-12)
+
+
+class Repeated:
+    """A log whose scene is periodic along x."""
+
+    def __init__(self, trace: Any) -> None:
+        self._trace = trace
+        scene = trace.config.scene
+        cell = SimpleNamespace(x=(-4.0, 6.0), y=None, z=None)
+        repeated = SimpleNamespace(bodies=scene.bodies, gravity=scene.gravity, periodic=cell)
+        self.config = SimpleNamespace(scene=repeated, planned_events=())
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._trace, name)
+
+
+def test_a_periodic_cell_is_played_by_its_edges_and_is_in_the_room(
+    trace: Any, tmp_path: Path
+) -> None:
+    assert json.loads(motion(trace))["cell"] == []
+    text = motion(Repeated(trace))
+    edges = np.array(json.loads(text)["cell"])
+    assert edges.shape == (12, 2, 3)
+    assert [edges[..., 0].min(), edges[..., 0].max()] == [-4.0, 6.0]
+    # Along y what moves, 0.35 m about 0.5 m, and the wall, 0.71 m about 0; three digits of 2 m.
+    assert [edges[..., 1].min(), edges[..., 1].max()] == pytest.approx([-0.709, 0.85], abs=2e-3)
+    if shutil.which("node") is not None:
+        script = tmp_path / "room.js"
+        (tmp_path / "player.js").write_text(PLAYER.read_text("utf-8"))
+        script.write_text(
+            f'const player = require("./player.js"); const room = player.roomOf({text});'
+            "console.log(JSON.stringify(room));"
+        )
+        done = subprocess.run(["node", script], capture_output=True, text=True, check=True)
+        assert json.loads(done.stdout)["centre"][0] == pytest.approx(1.0)
