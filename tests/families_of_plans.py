@@ -130,10 +130,7 @@ FAMILIES = (
     Family(texts=(scenes.JOINTED_APART,)),
     Family(("effects/rope", "effects/spring", "hard/contact/soft_to_stiff"), effects=("drag",)),
     Family(("effects/falling_restitution", "effects/cohesion")),
-    Family(
-        ("effects/hertz_contact", "effects/tangential_compliance", "effects/contact_spring"),
-        shape_pairs=BALLS,
-    ),
+    Family(("effects/hertz_contact", "effects/tangential_compliance"), shape_pairs=BALLS),
     Family(("scenes/oblique_impact", "hard/friction/rolling_resistance")),
     Family(("cost/residual_by_sweep", "hard/timestep/changes_during_the_run")),
     # The engine with everything, which the fuzz compiles.
