@@ -14,6 +14,7 @@ import pytest
 from interpreted import interpreted
 from packed_scenes import BLOCKS, found
 
+from lavendersim.engine.slabs import FEWEST_CONTACTS as FEWEST_TOGETHER
 from lavendersim.engine.solvers.packed import late
 from lavendersim.engine.solvers.packed.late import FEWEST_CONTACTS, FIRST, Packing, packs_late
 from lavendersim.engine.solvers.packed.layout import TOGETHER
@@ -120,7 +121,8 @@ def sweeps_made(monkeypatch: pytest.MonkeyPatch, recorded: bool) -> tuple[list[i
         monkeypatch.setattr(late, name, lambda *args, _kernel=made_of, **how: _kernel)
     spec = ADAPTIVE.including("residual_log") if recorded else ADAPTIVE
     sweep = interpreted(late.make_sweep_late(spec)[0])
-    system, packed = SimpleNamespace(count=late.MANY), SimpleNamespace(changes=np.zeros(TOGETHER))
+    system = SimpleNamespace(count=FEWEST_TOGETHER)
+    packed = SimpleNamespace(changes=np.zeros(TOGETHER))
     packing, told = Packing(FIRST, 0, 0), []
     for sweeps in range(12):
         greatest, _, packing = sweep(system, packed, None, packing, 11 - sweeps, sweeps < 10)
