@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lavendersim.engine.contacts_at_pose import contacts_at_pose
 from lavendersim.engine.records import PLANE
+from lavendersim.engine.row_terms import row_terms
 from lavendersim.engine.tangents import first_tangent, second_tangent
 from lavendersim.errors import UsageError
 from lavendersim.geometry.bodies import principal_inertia
@@ -84,7 +85,7 @@ class ContactSearch:
         spec = plan.spec._replace(
             effects=tuple(sorted(effects)), solver="projected_gauss_seidel", order="forward"
         )
-        self._springs = plan.spec.has("contact_spring")
+        self._springs = row_terms(plan.spec).elastic
         self._periodic = config.scene.periodic if "periodic_boundary" in effects else None
         self.slop = config.numerics.slop  # gap and penetration that the config calls none [m]
         scene = build(config, spec)

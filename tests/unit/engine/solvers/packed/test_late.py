@@ -97,7 +97,7 @@ def test_contacts_that_cannot_be_packed_stay_in_the_records(spec) -> None:
 
 
 def sweeps_made(monkeypatch: pytest.MonkeyPatch, recorded: bool) -> tuple[list[int], list[Any]]:
-    """Return the sizes of what is swept at once, and what a solve is told after each sweep."""
+    """Return the sizes of what is swept at once, and what each sweep returns."""
     made: list[int] = []
 
     def one(packed: Any, slots: int) -> float:
@@ -123,17 +123,17 @@ def sweeps_made(monkeypatch: pytest.MonkeyPatch, recorded: bool) -> tuple[list[i
     sweep = interpreted(late.make_sweep_late(spec)[0])
     system = SimpleNamespace(count=FEWEST_TOGETHER)
     packed = SimpleNamespace(changes=np.zeros(TOGETHER))
-    packing, told = Packing(FIRST, 0, 0), []
+    packing, seen = Packing(FIRST, 0, 0), []
     for sweeps in range(12):
         greatest, _, packing = sweep(system, packed, None, packing, 11 - sweeps, sweeps < 10)
-        told.append((math.isinf(greatest), packing))
-    return made, told
+        seen.append((math.isinf(greatest), packing))
+    return made, seen
 
 
 def test_sweeps_that_are_recorded_count_as_those_that_are_made_together(monkeypatch) -> None:
     """What is begun from several (`extrapolation`) is, in both, where a few together ended."""
-    together, told = sweeps_made(monkeypatch, recorded=False)
-    singly, told_singly = sweeps_made(monkeypatch, recorded=True)
+    together, seen = sweeps_made(monkeypatch, recorded=False)
+    singly, seen_singly = sweeps_made(monkeypatch, recorded=True)
     assert together == [TOGETHER, TOGETHER, 3, 1]
     assert singly == [1] * 12
-    assert told_singly == told
+    assert seen_singly == seen
