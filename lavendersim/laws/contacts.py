@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lavendersim.engine.contacts_at_pose import contacts_at_pose
 from lavendersim.engine.records import PLANE
+from lavendersim.engine.row_terms import row_terms
 from lavendersim.engine.tangents import first_tangent, second_tangent
 from lavendersim.errors import UsageError
 from lavendersim.geometry.bodies import principal_inertia
@@ -53,7 +54,7 @@ class Contacts(NamedTuple):
     b: NDArray[np.intp]
     feature: NDArray[np.int64]  # (n,) equal while the same vertices, edges and faces make the point
     frame: Floats  # (n, 3, 3) n from A to B, t1, t2 as rows
-    lever_a: Floats  # (n, 3) from the centre of mass to the own surface [m]
+    lever_a: Floats  # (n, 3) from the centre of mass to the own surface, or one point [m]
     lever_b: Floats
     gap: Floats  # (n,) separation, negative inside [m]
     mu: Floats  # (n,) [-] that of rest, where it is the larger
@@ -84,6 +85,7 @@ class ContactSearch:
         spec = plan.spec._replace(
             effects=tuple(sorted(effects)), solver="projected_gauss_seidel", order="forward"
         )
+        self._springs = row_terms(plan.spec).elastic
         self._periodic = config.scene.periodic if "periodic_boundary" in effects else None
         self.slop = config.numerics.slop  # gap and penetration that the config calls none [m]
         scene = build(config, spec)
@@ -159,9 +161,13 @@ class ContactSearch:
             np.stack(one(x, y, z, side), axis=-1) for one in (first_tangent, second_tangent)
         )
         a, b = found["a"].astype(np.intp), found["b"].astype(np.intp)
-        half = 0.5 * found["phi"][:, None] * normal
-        places = _vectors(bodies[b], ""), _vectors(bodies[a], "")
         of_pair = pairs[found["pair"]]
+        soft = (_number(of_pair, "compliance") > 0.0) | (_number(of_pair, "hertz_stiffness") > 0.0)
+        # Two that move and give way push on each other at one point, as in `engine.block`.
+        moves = bodies["inv_m"] > 0.0
+        at_one_point = self._springs & soft & moves[a] & moves[b]
+        half = 0.5 * np.where(at_one_point, 0.0, found["phi"])[:, None] * normal
+        places = _vectors(bodies[b], ""), _vectors(bodies[a], "")
         mu = np.maximum(_number(of_pair, "friction"), _number(of_pair, "static_friction"))
         return Contacts(
             a,
@@ -173,7 +179,7 @@ class ContactSearch:
             found["phi"].copy(),
             np.where(_number(of_pair, "friction") > 0.0, mu, 0.0),
             _number(of_pair, "restitution"),
-            (_number(of_pair, "compliance") == 0.0) & (_number(of_pair, "hertz_stiffness") == 0.0),
+            ~soft,
             self._belt(b) - self._belt(a),
         )
 

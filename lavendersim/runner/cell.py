@@ -40,7 +40,7 @@ from .call_length import CALL, CallLength, block_steps
 from .cell_outcome import CellOutcome, EndedCell, note_closed, note_measured
 from .environment import versions
 from .freed_memory import keep_freed_memory
-from .in_turns import in_turns
+from .in_turns import in_turns, with_growth
 from .interruption import deferred, raise_noted
 from .measured import Measured, measure_cell
 from .problem_dump import ProblemDump
@@ -301,7 +301,9 @@ def _simulate(
         began(lambda: int(counters["step"][0]))
 
     def noted(job: CellJob, stages: Stages) -> Stages:
-        one = yield from stages
+        one, more = yield from with_growth(stages, compiled_ns)  # of kernels that lay out the log
+        compiling = one.outcome.compile_ns + more
+        one = one._replace(outcome=one.outcome._replace(compile_ns=compiling))
         closed(job, one.outcome)
         return one
 
@@ -338,8 +340,8 @@ def _simulation(
 
     ready: its engine, and what its kernel took [ns]. signalled: names a signal that came.
     """
-    physics_ns = logging_ns = 0
-    (engine, compile_ns), steps, compiled = ready, job.config.steps, compiled_ns()
+    physics_ns = logging_ns = done = stop = 0
+    (engine, compile_ns), steps = ready, job.config.steps
     in_log = job.in_log or plan_in_log(job.plan)
     absent, metadata = in_log.absent, metadata_of(job, in_log)
     writer = TraceWriter(job.path, job.config, job.as_written, metadata, absent, job.copy)
@@ -352,7 +354,6 @@ def _simulation(
     accuracy = Accuracy(tolerance=job.config.numerics.tolerance)
     status = "complete"
     call = CallLength(len(scene.names))
-    done = stop = 0
     while True:
         yield None
         events.apply_due(done)
@@ -394,7 +395,6 @@ def _simulation(
     start = clock_without_compiling()
     written = writer.close(status)
     logging_ns += clock_without_compiling() - start
-    compile_ns += compiled_ns() - compiled  # of kernels that lay out the log
     times = compile_ns, physics_ns, logging_ns
     outcome = CellOutcome(job.cell, status, done, *times, accuracy, written.digest)
     return Simulated(outcome, written, bounds.worst)

@@ -41,3 +41,24 @@ def in_turns(
         for one in going.values():
             one.close()
     return [results[place] for place in range(len(generators))]
+
+
+def with_growth(
+    generator: Generator[Asked, Any, Result], reading: Callable[[], int]
+) -> Generator[Asked, Any, tuple[Result, int]]:
+    """Return what a generator returns, and by how much a reading grew in its own stages.
+
+    What others add to it in between is theirs.
+    """
+    growth, answer = 0, None
+    try:
+        while True:
+            before = reading()
+            try:
+                what = generator.send(answer)
+            except StopIteration as end:
+                return end.value, growth + reading() - before
+            growth += reading() - before
+            answer = yield what
+    finally:
+        generator.close()

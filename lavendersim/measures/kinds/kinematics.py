@@ -62,7 +62,7 @@ def centre_of_mass(spec: specs.CentreOfMass, trace: Trace) -> float:
     UsageError where an event changes the mass of one of the bodies; NaN when the run ends before.
     """
     rows = _rows(trace, spec.begin, spec.end)
-    columns = body_columns(trace, spec.bodies)
+    columns = [*dict.fromkeys(body_columns(trace, spec.bodies))]  # one may be named twice
     if not rows or not columns:
         return NAN
     names = [trace.bodies[column] for column in columns]

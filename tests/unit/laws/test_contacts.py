@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from made_motion import DT, RADIUS, ball, motion, states
+from made_motion import BALLS, DT, RADIUS, ball, motion, states
 
 from lavendersim.errors import UsageError
 from lavendersim.laws.contacts import AROUND, ContactSearch
@@ -26,6 +26,19 @@ def test_levers_end_on_each_bodys_own_surface() -> None:
     assert found.lever_b[0] == pytest.approx([0, 0, -RADIUS], abs=1e-16)
     assert found.lever_a[0] == pytest.approx([0.3, 0.2, 0.0], abs=1e-16)
     assert np.linalg.det(found.frame[0]) == pytest.approx(1.0, abs=1e-15)
+
+
+@pytest.mark.parametrize(("law", "indented"), [("spring", 0.002), ("regularised", 0.0)])
+def test_levers_of_what_moves_and_gives_way_end_at_one_point(law: str, indented: float) -> None:
+    """In the middle, by the law of springs: as friction acts there, it turns both alike."""
+    soft = "surface: {friction: 0.5, compliance: 1e-5}, mass: 2"
+    text = BALLS.replace("mass: 2", soft)
+    text = text.replace("timestep: 1/100", f"timestep: 1/100, compliance_law: {law}")
+    place = states(([2 * RADIUS - 0.004, 0, 0], [0] * 6))
+    found = ContactSearch(motion(text, *place)).at(place[0][0], SLOW, DT)
+    assert found.gap == pytest.approx([-0.004], abs=1e-16)
+    assert found.lever_a[0] == pytest.approx([RADIUS - indented, 0, 0], abs=1e-16)
+    assert found.lever_b[0] == pytest.approx([indented - RADIUS, 0, 0], abs=1e-16)
 
 
 def test_it_looks_as_far_as_bodies_get_and_a_little_around() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Generator
 
 import pytest
 
-from lavendersim.runner.in_turns import in_turns
+from lavendersim.runner.in_turns import in_turns, with_growth
 
 
 def nothing(asked: list[object]) -> list[object]:
@@ -62,3 +62,24 @@ def test_what_is_asked_for_in_one_turn_is_answered_at_once() -> None:
 
     assert in_turns([asking(2, 3), asking(), asking(0)], squares) == [[4, 9], [], [0]]
     assert asked == [[2, 0], [3]]
+
+
+def test_what_a_reading_grows_by_between_its_stages_is_not_its_own() -> None:
+    read = [0]
+
+    def stages(own: int) -> Generator[str, int, int]:
+        read[0] += own
+        answer = yield "what"
+        read[0] += 10 * own
+        return answer
+
+    grown = [with_growth(stages(own), lambda: read[0]) for own in (1, 2)]
+    assert in_turns(grown, lambda asked: [len(one) for one in asked]) == [(4, 11), (4, 22)]
+
+
+def test_a_generator_whose_growth_is_read_is_closed_with_it() -> None:
+    seen: list[str] = []
+    going = with_growth(counted("a", 3, seen), lambda: 0)
+    next(going)
+    going.close()
+    assert seen == ["a0", "a closed"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -9,11 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lavendersim.engine.compile import compiling
 from lavendersim.experiment import load_experiment_text
 from lavendersim.peers.catalogue import PEERS
 from lavendersim.peers.messages import Built, Ended, States
 from lavendersim.runner import other_engine, run
 from lavendersim.runner.other_engine import absent_topics
+from lavendersim.trace import TraceWriter
 from tests.engines import BALL, needs
 
 
@@ -78,3 +81,26 @@ def test_a_state_that_is_not_finite_ends_the_cell_as_it_does_by_lavender(
     assert (outcome.steps, outcome.physics_ns) == (2, 300)
     assert list(cell.trace().step["step"]) == [0, 1, 2]
     assert list(cell.trace().contact["step"]) == [0, 1, 2]
+
+
+@needs("mujoco")
+def test_kernels_that_lay_out_its_log_are_no_cost_of_logging(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    compiled, close = 10_000_000, TraceWriter.close  # [ns]
+
+    def built(task: Any) -> Iterator[Any]:
+        yield Built("0", 1)
+        pose = np.array([[[0.0, 0, 3, 1, 0, 0, 0]]])
+        yield States(0, pose, np.zeros((1, 1, 6)), np.zeros((0, 3 + 12)), 1)
+        yield Ended("")
+
+    def compiled_first(self: TraceWriter, *arguments: Any) -> Any:
+        with compiling():
+            time.sleep(1e-9 * compiled)
+        return close(self, *arguments)
+
+    monkeypatch.setattr(other_engine, "messages_of", built)
+    monkeypatch.setattr(TraceWriter, "close", compiled_first)
+    finished = run(load_experiment_text(f"{BALL}engine: mujoco\n", "ball.yaml"), tmp_path)
+    assert finished.outcomes[0].compile_ns >= compiled

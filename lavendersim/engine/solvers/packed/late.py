@@ -64,12 +64,18 @@ def make_sweep_late(spec: Spec) -> tuple[Any, Any]:
             slots = pack(system, packed)
         if ahead == 0:
             sweeps = min(most, TOGETHER)
-            if looks_at_each or not far or count < MANY or sweeps < 2:
+            if not far or count < MANY or sweeps < 2:
                 change = sweep_packed(packed, slots)
                 return change, change, Packing(0, slots, 0)
-            sweep_together(packed, slots, sweeps)
+            if not looks_at_each:
+                sweep_together(packed, slots, sweeps)
             ahead = sweeps
-        change = packed.changes[ahead - 1]
+        # Who records each sweep has them one by one. They count as made together all the same: what
+        # ends a solve, and what it begins from (`extrapolation`), is what it is without a record.
+        if looks_at_each:
+            change = sweep_packed(packed, slots)
+        else:
+            change = packed.changes[ahead - 1]
         return inf if ahead > 1 else change, change, Packing(0, slots, ahead - 1)
 
     def put_back(system, packed, packing):

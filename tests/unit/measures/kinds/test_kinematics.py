@@ -60,6 +60,7 @@ def test_a_centre_of_mass_is_weighed_and_its_mean_is_over_time() -> None:
     # 3 m, then 6 m; the mean over the first step of two is 4.5 m
     assert found() == pytest.approx(0.5 * (4.5 + 6.0), rel=1e-14)
     assert found(bodies=("light",)) == 0.0
+    assert found(bodies=("light", "heavy", "light")) == found()  # each has one mass
     assert found(bodies=("heavy",), **{"from": 0.01}) == pytest.approx(8.0, rel=1e-14)
     assert math.isnan(found(to=1.0))
     with pytest.raises(ValidationError, match="expected `from` before `to`"):

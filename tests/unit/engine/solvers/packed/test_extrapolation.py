@@ -14,6 +14,7 @@ from packed_scenes import BLOCKS, found, mechanics, natural_maps
 from lavendersim.engine.compile import compiling
 from lavendersim.engine.effects.anderson_acceleration import PLAIN_SWEEPS
 from lavendersim.engine.kernel_cache import cached
+from lavendersim.engine.solvers.packed import late, packing, sweep
 from lavendersim.engine.solvers.packed.extrapolation import (
     NOTHING,
     PAUSE,
@@ -207,3 +208,23 @@ def test_long_solves_leave_less_and_obey_mechanics() -> None:
     w[:, 0] += mixed.contacts["target"]
     residual = natural_maps(mixed.contacts, w, mixed.impulses).max()
     assert residual == pytest.approx(mixed.residual, abs=allowed * 5.0)
+
+
+def test_sweeps_that_are_recorded_leave_what_those_made_together_leave(monkeypatch) -> None:
+    """Of large solves a few sweeps together lead to the next beginning, whoever looks at each."""
+    for module in (packing, sweep):
+        monkeypatch.setattr(module, "RUN", 2)  # groups
+    monkeypatch.setattr(late, "MANY", late.FEWEST_CONTACTS)
+    prepared = found("many towers")
+    parameters = prepared.parameters.copy()
+    parameters["residuals_to"] = -1  # of no step: there is room for no row
+    spec = prepared.spec.including("anderson_acceleration")
+    mixed = prepared._replace(spec=spec, parameters=parameters)
+    together = Solve(mixed, "adaptive")
+    singly = Solve(mixed._replace(spec=spec.including("residual_log")), "adaptive")
+    for sweeps in (PLAIN_SWEEPS + 6, 131):
+        together.run(sweeps)
+        singly.run(sweeps)
+        assert together.sweeps == singly.sweeps == sweeps
+        assert together.contacts.tobytes() == singly.contacts.tobytes()
+        assert together.velocities.tobytes() == singly.velocities.tobytes()

@@ -5,11 +5,19 @@ Engines of Newton's method beside them: `test_packed_engines`.
 
 from __future__ import annotations
 
+import math
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
+from interpreted import interpreted
 from packed_scenes import BLOCKS, found
 
-from lavendersim.engine.solvers.packed.late import FEWEST_CONTACTS, FIRST, packs_late
+from lavendersim.engine.slabs import FEWEST_CONTACTS as FEWEST_TOGETHER
+from lavendersim.engine.solvers.packed import late
+from lavendersim.engine.solvers.packed.late import FEWEST_CONTACTS, FIRST, Packing, packs_late
+from lavendersim.engine.solvers.packed.layout import TOGETHER
 from tests.benchmarks.prepared_contacts import Solve
 
 # As in `test_sweep`: velocities of some m/s, a hundred roundings a visit, some visits in a row.
@@ -86,3 +94,46 @@ def test_packed_sweeps_are_those_of_lanes_after_the_first_sweeps_over_the_record
 def test_contacts_that_cannot_be_packed_stay_in_the_records(spec) -> None:
     assert packs_late(ADAPTIVE)
     assert not packs_late(spec)
+
+
+def sweeps_made(monkeypatch: pytest.MonkeyPatch, recorded: bool) -> tuple[list[int], list[Any]]:
+    """Return the sizes of what is swept at once, and what each sweep returns."""
+    made: list[int] = []
+
+    def one(packed: Any, slots: int) -> float:
+        made.append(1)
+        return float(len(made))
+
+    def nothing(*arguments: Any) -> None:
+        raise AssertionError(arguments)
+
+    def together(packed: Any, slots: int, sweeps: int) -> None:
+        made.append(sweeps)
+
+    for name, kernel in {
+        "make_sweep": nothing,
+        "make_sweep_packed": one,
+        "make_sweep_together": together,
+        "make_pack": lambda system, packed: 8,
+        "make_unpack": nothing,
+    }.items():
+        made_of = SimpleNamespace(py_func=kernel)
+        monkeypatch.setattr(late, name, lambda *args, _kernel=made_of, **how: _kernel)
+    spec = ADAPTIVE.including("residual_log") if recorded else ADAPTIVE
+    sweep = interpreted(late.make_sweep_late(spec)[0])
+    system = SimpleNamespace(count=FEWEST_TOGETHER)
+    packed = SimpleNamespace(changes=np.zeros(TOGETHER))
+    packing, seen = Packing(FIRST, 0, 0), []
+    for sweeps in range(12):
+        greatest, _, packing = sweep(system, packed, None, packing, 11 - sweeps, sweeps < 10)
+        seen.append((math.isinf(greatest), packing))
+    return made, seen
+
+
+def test_sweeps_that_are_recorded_count_as_those_that_are_made_together(monkeypatch) -> None:
+    """What is begun from several (`extrapolation`) is, in both, where a few together ended."""
+    together, seen = sweeps_made(monkeypatch, recorded=False)
+    singly, seen_singly = sweeps_made(monkeypatch, recorded=True)
+    assert together == [TOGETHER, TOGETHER, 3, 1]
+    assert singly == [1] * 12
+    assert seen_singly == seen
