@@ -40,6 +40,8 @@ measure:
   whole: {kind: impulse_balance, window: all}
   momentum: {kind: momentum_drift}
   force: {kind: steady_force, body: ball, last: 0.02}
+  torque: {kind: steady_torque, body: ball, along: [1, 0, 1], last: 0.02}
+  centre: {kind: centre_of_mass, along: [1, 0, 1], from: 0.01, to: 0.02}
   depth:
     kind: steady_penetration
     body: ball
@@ -85,6 +87,7 @@ measure:
   flips: {kind: flip_time_error, body: ball, flips: 2}
   share: {kind: ratio, measure: hit, to: pushed}
   less: {kind: difference, measure: hit, minus: pushed}
+  root: {kind: power, measure: hit, exponent: 1/2}
   middle: {kind: of_row, measure: sweeps, of: mean}
 expect:
   - {name: high, measure: apex, at_least: 0.1}

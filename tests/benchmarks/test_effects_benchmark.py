@@ -21,7 +21,6 @@ OTHER_LAWS = {
         "sliding_stops",
         "overlooked_points",
         "supernodes",
-        "anderson_acceleration",
     ),
 }
 # Nor does the default choose these.

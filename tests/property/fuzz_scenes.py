@@ -111,12 +111,12 @@ NOT_DRAWN = {
     "capture_in_sweeps": "a mistake that is made on purpose, which breaks laws",
     "periodic_boundary": "scenes here have walls, or none; see test_periodic_boundary.py",
     "supernodes": "of hundreds of bodies; here envelopes are small; see `test_panels.py`",
+    "anderson_acceleration": "of long solves of hundreds of bodies; see `test_extrapolation.py`",
 }
 # Those whose kernels run since the engine has them, though no scene is large enough, or asks.
 FORCED = {
     "broad_phase": "of thousands of pairs; here the tree is made for a few",
     "packed_sweeps": "of many bodies; here lanes are packed for a few",
-    "anderson_acceleration": "of long solves of hundreds of bodies; see `test_extrapolation.py`",
     "problem_log": "few scenes can be written as FCLIB files: none is asked for",
     "velocity_log": "columns of states that others have",
 }

@@ -187,8 +187,11 @@ def make_first_stop(spec: Spec) -> Any:
             least = slowest(contact, bodies, motion)
             # What nears or leaves is not pressed as the part begins: no friction of it can change.
             # But what is pressed at the middle of a step, where normals turn, nears or leaves by
-            # what they turn in half a step; and what rolls there slips by as much.
+            # what they turn in half a step; and what rolls there slips by as much. A plane's normal
+            # is the same wherever it is touched.
             if abs(contact.rate) > least:
+                if bodies[contact.a].shape == PLANE or bodies[contact.b].shape == PLANE:
+                    continue
                 turned = 0.5 * params.timestep * gap_acceleration(contact, bodies, motion)
                 if abs(contact.rate) > least + turned or dot(s, s) <= turned * turned:
                     continue

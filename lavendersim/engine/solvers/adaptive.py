@@ -144,7 +144,7 @@ def make(spec: Spec) -> Iteration:
                     most -= LAST
             # What rests lets go of its first change in the second sweep.
             far = sweeps > FIRST and carry.greatest > FAR * carry.aim
-            if mixes:  # each sweep is told from the one before
+            if mixes:  # each sweep begins from those before it
                 far = far and sweeps < PLAIN_SWEEPS
             greatest, change, packing = sweep(system, workspace.packed, params, packing, most, far)
         else:
