@@ -214,8 +214,7 @@ def make_stop_pushing(spec: Spec) -> Any:
     """Return `kernel(contact)`: no impulse in place of one that no velocity has a digit of.
 
     Each tangent of what flies leaves a share FLATTEST of an impulse that it was handed, down to the
-    least of all numbers; and what has one is carried by its contact (`integrate.make_classify`),
-    counted as one that touches, and has not left for a trigger.
+    least of all numbers; and what has one is carried by its contact (`integrate.make_classify`).
     """
     terms = row_terms(spec)
     friction, torsional, rolling = terms.frictional, terms.torsional, terms.rolling
@@ -232,28 +231,10 @@ def make_stop_pushing(spec: Spec) -> Any:
     return kernel(stop_pushing, spec)
 
 
-def make_pushes(spec: Spec) -> Any:
-    """Return `kernel(contact, velocities, params) -> whether` an impulse above 0 is one."""
-    push, normal_velocity = make_push(spec), make_normal_velocity(spec)
-
-    def pushes(contact, velocities, params):
-        left = contact.k_n * contact.lambda_n
-        if left <= NOTHING:
-            return False
-        if contact.spring_compliance > 0.0:
-            v = normal_velocity(contact, velocities[contact.a], velocities[contact.b])
-            if left <= ROUND_OFF * max(abs(v), abs(contact.spring_v)):
-                impulse, _ = push(contact, v, params)
-                return impulse > 0.0
-        return True
-
-    return kernel(pushes, spec)
-
-
 def make_solve_by_tangents(spec: Spec, solve: Any) -> Any:
     """Return the kernel of a solver whose rows follow their laws; solve: one of linear rows."""
     linearise, forget_history = make_linearise(spec), make_forget_history(spec)
-    stop_pushing, pushes = make_stop_pushing(spec), make_pushes(spec)
+    stop_pushing = make_stop_pushing(spec)
 
     def solve_by_tangents(system, workspace, params, counters, residual_rows):
         contacts, count, velocities = system.contacts, system.count, system.velocities
@@ -278,7 +259,7 @@ def make_solve_by_tangents(spec: Spec, solve: Any) -> Any:
             counters.not_converged = 1
         for c in range(count):
             contact = contacts[c]
-            if contact.lambda_n > 0.0 and not pushes(contact, velocities, params):
+            if contact.lambda_n > 0.0 and contact.k_n * contact.lambda_n <= NOTHING:
                 stop_pushing(contact)
 
     return kernel(solve_by_tangents, spec)

@@ -52,18 +52,3 @@ def test_momentum_and_angular_momentum_are_kept(ran: dict[str, States], name: st
     ):
         of_time = np.stack([step[f"{quantity}_{axis}"] for axis in "xyz"], axis=-1)
         np.testing.assert_allclose(of_time, of_time[:1].repeat(len(of_time), 0), atol=allowed)
-
-
-@pytest.mark.parametrize("name", SURFACES)
-def test_there_is_no_contact_from_the_step_on_that_begins_apart(
-    ran: dict[str, States], name: str
-) -> None:
-    """The impulses that solves begin with, from the step before, leave nothing of themselves."""
-    states = ran[name]
-    apart = np.linalg.norm(states.of("one")[0] - states.of("other")[0], axis=1) - sum(RADII)
-    met = int(np.argmax(apart < 0.0))
-    left = met + int(np.argmax(apart[met:] > 0.0))
-    assert met < left < len(apart) - 2
-    # The step that meets begins apart, and the one that leaves ends so.
-    np.testing.assert_array_equal(states.step["contact_count"][left + 1 :], 0)
-    np.testing.assert_array_equal(states.step["contact_count"][met : left + 1], 1)
