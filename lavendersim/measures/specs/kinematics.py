@@ -14,9 +14,10 @@ from lavendersim.quantities.readings import POSES
 Direction = Annotated[Vector3, Vector(3, Quantity())]
 
 
-def _later(begin: float, end: float | None) -> None:
-    if end is not None and end <= begin:
-        raise sentence_error("expected `from` before `to`")
+class _OfOneBody(Measure):
+    """A measure of one body."""
+
+    body: BodyName = Field(description="the body")
 
 
 class _Between(Measure):
@@ -24,7 +25,6 @@ class _Between(Measure):
 
     READS = POSES
 
-    body: BodyName = Field(description="the body")
     begin: Seconds = Field(default=0.0, alias="from", description="first time [s]")
     end: Seconds | None = Field(
         default=None, alias="to", description="second time [s]; the end of the run when absent"
@@ -32,12 +32,13 @@ class _Between(Measure):
 
     @model_validator(mode="after")
     def _forward(self) -> Self:
-        _later(self.begin, self.end)
+        if self.end is not None and self.end <= self.begin:
+            raise sentence_error("expected `from` before `to`")
         return self
 
 
-class _Along(_Between):
-    """A component of the motion between two times."""
+class _Along(_Between, _OfOneBody):
+    """A component of a body's motion between two times."""
 
     along: Direction = Field(description="direction, world frame; its length does not matter")
 
@@ -69,10 +70,9 @@ class MeanAngularVelocity(_Along):
     kind: Literal["mean_angular_velocity"]
 
 
-class CentreOfMass(Measure):
+class CentreOfMass(_Between):
     """Component [m] of the common centre of mass of bodies: its mean between two times."""
 
-    READS = POSES
     kind: Literal["centre_of_mass"]
     bodies: tuple[BodiesName, ...] = Field(
         default=(), description="which, also arrangements; all movable bodies when absent"
@@ -80,15 +80,6 @@ class CentreOfMass(Measure):
     along: Annotated[Vector3, Vector(3, Quantity(), nonzero=True)] = Field(
         description="direction, world frame; its length does not matter"
     )
-    begin: Seconds = Field(default=0.0, alias="from", description="first time [s]")
-    end: Seconds | None = Field(
-        default=None, alias="to", description="second time [s]; the end of the run when absent"
-    )
-
-    @model_validator(mode="after")
-    def _forward(self) -> Self:
-        _later(self.begin, self.end)
-        return self
 
 
 class TopSpeed(Measure):
