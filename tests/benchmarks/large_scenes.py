@@ -106,7 +106,7 @@ def solved(text: str) -> str:
 
 def swept(text: str) -> str:
     """Return a scene that asks for 1e-6 m/s, and gives a solve as many sweeps as that may take."""
-    numerics = "numerics: {timestep: 1/240, tolerance: 1e-6, sweeps: 10000}"
+    numerics = "numerics: {timestep: 1/240, tolerance: 1e-6, sweeps: 20000}"
     assert "numerics: {timestep: 1/240}" in text
     return text.replace("numerics: {timestep: 1/240}", numerics)
 
